@@ -1,0 +1,139 @@
+// Lido's renderer: draws a SimFrame with OpenGL 4.5 core, in one of several published styles.
+//
+// The renderer never makes a context: the caller makes one current first (a window, EGL or OSMesa) and keeps it current
+// for every call. All drawing goes to framebuffers of its own, so it works where there is no window at all;
+// render_present copies the picture to framebuffer 0. Of simulation it knows sim/frame.h only.
+//
+//   RenderError error;
+//   Render *render = render_create(1280, 720, &error);
+//   RenderSettings settings = render_default_settings();
+//   RenderView view = …;
+//   if (render_draw(render, frame, &view, &settings, &error)) render_read_rgb8(render, pixels);
+//
+// Threads: every call from the thread that holds the context.
+#ifndef LIDO_RENDER_RENDER_H
+#define LIDO_RENDER_RENDER_H
+
+#include <stddef.h>
+
+#include "sim/frame.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/// Why a call failed: one line without a newline, fit to be shown to a person. A shader's error names file and line.
+typedef struct RenderError { char message[512]; } RenderError;
+
+/// Where the eye is. Perspective, looking from `eye` at `target`, up as near to (0, 1, 0) as can be.
+typedef struct RenderView {
+  float eye[3], target[3];     ///< m
+  float vertical_fov;          ///< degrees, full angle, (1, 170), default 38 (about a 35 mm lens at 16:9)
+} RenderView;
+
+typedef enum RenderToneMap {
+  RENDER_TONE_NONE = 0,        ///< a PNG holds 255 × the linear value, clamped, undithered: for tests against truth
+  RENDER_TONE_FILMIC = 1       ///< exposure, a filmic curve, the sRGB transfer, dither: the default
+} RenderToneMap;
+
+typedef enum RenderSky {
+  RENDER_SKY_CLEAR = 0,        ///< a clear day with the sun and a soft horizon: the default
+  RENDER_SKY_GRADIENT = 1      ///< exactly mix(horizon, zenith, max(0, d.y)) for a unit direction d; below the horizon: horizon
+} RenderSky;
+
+typedef enum RenderFloor {
+  RENDER_FLOOR_TILES = 0,      ///< pale tiles with fine grout, fading into the horizon: the default
+  RENDER_FLOOR_CHECKER = 1,    ///< exactly floor_colour[0] where floor(x/s) + floor(z/s) is even, else floor_colour[1]; unlit
+  RENDER_FLOOR_NONE = 2        ///< no floor: sky everywhere
+} RenderFloor;
+
+/// Everything about a picture that is not the water's shape or the eye. Colours are linear light.
+/// Make it with render_default_settings, change what you need.
+typedef struct RenderSettings {
+  uint32_t cookie;             ///< set by render_default_settings; others are refused
+  const char *style;           ///< name in the style table, default "points"
+
+  // light
+  float sun_direction[3];      ///< towards the sun, need not be unit, default (−0.45, 0.75, 0.5): late morning
+  float sun_colour[3];         ///< irradiance, linear, default (1, 0.95, 0.86) × 3
+  bool sun;                    ///< default true; off: neither sunlight nor glints
+  bool shadow;                 ///< default true
+
+  // environment
+  RenderSky sky;
+  float sky_zenith[3], sky_horizon[3]; ///< of the gradient sky
+  RenderFloor floor;
+  float floor_level;           ///< m, y of the floor's top; default NAN: the container's lowest y
+  float tile_size;             ///< m, edge of a tile or checker square, default 0.2, > 0
+  float floor_colour[2][3];    ///< the checker's colours
+  bool container_visible;      ///< thin bright edges of the tank, default true
+
+  // liquid
+  float absorption[3];         ///< 1/m per channel, red > green > blue, default (1.8, 0.42, 0.30)
+  float refractive_index;      ///< of the liquid, default 1.333, range [1, 3]
+
+  // picture
+  RenderToneMap tone_map;
+  float exposure;              ///< factor before the curve, default 1, > 0
+
+  // style "points"
+  struct { float scale; } points; ///< sphere radius in particle radii, default 1.25, range [0.1, 5]
+} RenderSettings;
+RenderSettings render_default_settings(void);
+
+typedef struct Render Render;
+
+/// NULL and *error when there is no OpenGL 4.5 core context, the size is out of [1, 16384], or a shader fails.
+Render *render_create(int32_t width, int32_t height, RenderError *error);
+void render_destroy(Render *render); ///< NULL is allowed; the context must still be current
+bool render_resize(Render *render, int32_t width, int32_t height, RenderError *error);
+
+/// Draw one frame. Particles that are NaN or out of view are skipped; no particle is an empty tank, not an error.
+/// false and *error: unknown style, a style's need is missing from the frame, a value out of range, GL out of memory.
+bool render_draw(Render *render, const SimFrame *frame, const RenderView *view, const RenderSettings *settings,
+                 RenderError *error);
+
+/// Read back the last picture: rows from top to bottom, width·height·3 bytes.
+void render_read_rgb8(Render *render, uint8_t *rgb);
+/// Copy the last picture to framebuffer 0, whose size is given in pixels.
+void render_present(Render *render, int32_t window_width, int32_t window_height);
+
+// ---- Styles and their layers ---------------------------------------------------------------------------------------------
+
+int32_t render_style_count(void);
+const char *render_style_name(int32_t index);         ///< NULL when out of range
+const char *render_style_summary(int32_t index);      ///< one line: what it is, after whom
+unsigned render_style_needs(const char *style);       ///< SimNeed bits; 0 for an unknown style
+bool render_style_exists(const char *style);
+
+/// A layer is an intermediate of the style: depth, normal … The background's own layers belong to every style.
+int32_t render_layer_count(const char *style);
+const char *render_layer_name(const char *style, int32_t index);
+/// Show a layer instead of the picture in later draws; NULL: the picture. false: the style has no such layer.
+bool render_show_layer(Render *render, const char *layer);
+/// Read the shown layer's raw values from the last draw: rows from top to bottom, width·height·*channels floats (1 or 3).
+/// `values` NULL: only set *channels. false: no layer is shown.
+bool render_read_layer(Render *render, float *values, int32_t *channels);
+
+// ---- A line of text over the picture (the window's help and figures) ------------------------------------------------------
+
+/// Draw `text` (ASCII, lines separated by \n) over the last picture, top left corner at (x, y) pixels.
+void render_text(Render *render, int32_t x, int32_t y, int32_t scale, const char *text);
+
+// ---- Measuring -----------------------------------------------------------------------------------------------------------
+
+typedef struct RenderPassTime { const char *name; double gpu_milliseconds, cpu_milliseconds; } RenderPassTime;
+/// Times of the passes of the last draw, in order. GPU times wait for the GPU: ask only when you want them.
+/// Returns the number of passes; at most `capacity` are written.
+int32_t render_pass_times(Render *render, RenderPassTime *times, int32_t capacity);
+
+/// Errors and warnings that the driver reported (KHR_debug) since creation; 0 in a correct program.
+int32_t render_gl_error_count(const Render *render);
+/// "vendor / renderer / version" of the context.
+const char *render_gl_description(const Render *render);
+
+
+#ifdef __cplusplus
+}
+#endif
+#endif
