@@ -1,0 +1,197 @@
+// The hand in the water: sequences of mouse positions against the pushes they must give.
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "app/camera.h"
+#include "app/interact.h"
+
+enum { WIDTH = 800, HEIGHT = 400 };
+
+static const SimContainer tank = {.min = {0, 0, 0}, .max = {2, 1, 1}};
+static const float earth[3] = {0, -9.81f, 0};
+
+// From the front: right is +x, up is +y, into the picture is −z.
+static RenderView front_view(void) {
+  return (RenderView){.eye = {1, 0.25f, 5}, .target = {1, 0.25f, 0.5f}, .vertical_fov = 38};
+}
+
+static void assert_near(double got, double want, double tolerance) {
+  if (!(fabs(got - want) <= tolerance)) fail_msg("got %.9g, want %.9g within %g", got, want, tolerance);
+}
+
+static void assert_near3(const float got[3], double x, double y, double z, double tolerance) {
+  assert_near(got[0], x, tolerance);
+  assert_near(got[1], y, tolerance);
+  assert_near(got[2], z, tolerance);
+}
+
+static InteractStrength strength_of_tank(void) {
+  return interact_strength(&tank, earth, 0.01f);
+}
+
+// A stroke from the middle by (dx, dy) pixels in `seconds`.
+static int take_stroke(InteractMode mode, float dx, float dy, double seconds, SimPush pushes[INTERACT_MAX_PUSHES]) {
+  InteractStrength strength = strength_of_tank();
+  RenderView view = front_view();
+  Interact hand;
+  interact_begin(&hand, mode, WIDTH / 2.0f, HEIGHT / 2.0f);
+  interact_move(&hand, WIDTH / 2.0f + dx, HEIGHT / 2.0f + dy);
+  return interact_take(&hand, &strength, &view, WIDTH, HEIGHT, seconds, pushes);
+}
+
+static void strength_follows_size_and_gravity(void **state) {
+  (void)state;
+  InteractStrength small = strength_of_tank();
+  assert_near(small.radius, sqrt(6) / 8, 1e-6);
+  assert_near(small.acceleration, 4 * 9.81, 1e-4);
+  assert_near(small.speed, 0.5 * sqrt(9.81 * sqrt(6)), 1e-5);
+  const SimContainer large_tank = {.min = {0, 0, 0}, .max = {20, 10, 10}};
+  const float moon[3] = {0, -1.62f, 0}, none[3] = {0};
+  assert_near(interact_strength(&large_tank, earth, 0.01f).radius, 10 * small.radius, 1e-5);
+  assert_near(interact_strength(&tank, moon, 0.01f).acceleration, 4 * 1.62, 1e-5);
+  assert_near(interact_strength(&tank, none, 0.01f).acceleration, 4 * 9.81, 1e-4);
+  // Coarse water: the hand is never thinner than a few particles.
+  assert_near(interact_strength(&tank, earth, 0.1f).radius, 0.8, 1e-6);
+}
+
+static void an_idle_hand_does_nothing(void **state) {
+  (void)state;
+  SimPush pushes[INTERACT_MAX_PUSHES];
+  assert_int_equal(take_stroke(INTERACT_NONE, 100, 0, 0.1, pushes), 0);
+}
+
+static void a_fast_stroke_drags_in_its_direction(void **state) {
+  (void)state;
+  const float strokes[][2] = {{200, 0}, {-200, 0}, {0, 150}, {0, -150}, {120, -160}};
+  for (size_t i = 0; i < sizeof strokes / sizeof strokes[0]; i++) {
+    SimPush pushes[INTERACT_MAX_PUSHES];
+    float dx = strokes[i][0], dy = strokes[i][1], length = hypotf(dx, dy);
+    int count = take_stroke(INTERACT_PUSH, dx, dy, 0.01, pushes);
+    assert_true(count >= 1);
+    for (int p = 0; p < count; p++) // pixels count downwards, metres upwards
+      assert_near3(pushes[p].acceleration, 4 * 9.81 * dx / length, 4 * 9.81 * -dy / length, 0, 1e-3);
+  }
+}
+
+static void a_stroke_follows_the_picture_not_the_world(void **state) {
+  (void)state;
+  // From the right-hand side, the picture's right is −z.
+  RenderView view = {.eye = {6, 0.25f, 0.5f}, .target = {1, 0.25f, 0.5f}, .vertical_fov = 38};
+  InteractStrength strength = strength_of_tank();
+  SimPush pushes[INTERACT_MAX_PUSHES];
+  Interact hand;
+  interact_begin(&hand, INTERACT_PUSH, 300, 200);
+  interact_move(&hand, 500, 200);
+  assert_true(interact_take(&hand, &strength, &view, WIDTH, HEIGHT, 0.01, pushes) >= 1);
+  assert_near3(pushes[0].acceleration, 0, 0, -4 * 9.81, 1e-3);
+}
+
+static void a_slow_stroke_is_weak(void **state) {
+  (void)state;
+  SimPush slow[INTERACT_MAX_PUSHES], slower[INTERACT_MAX_PUSHES];
+  take_stroke(INTERACT_PUSH, 10, 0, 0.1, slow);
+  take_stroke(INTERACT_PUSH, 10, 0, 0.2, slower);
+  assert_true(slow[0].acceleration[0] > 0.1f);
+  assert_near(slower[0].acceleration[0] / slow[0].acceleration[0], 0.5, 0.05);
+}
+
+static void a_still_hand_presses_or_lifts_along_the_ray(void **state) {
+  (void)state;
+  SimPush pushes[INTERACT_MAX_PUSHES];
+  assert_int_equal(take_stroke(INTERACT_PUSH, 0, 0, 0.1, pushes), 1);
+  assert_near3(pushes[0].acceleration, 0, 0, -2 * 9.81, 1e-3);
+  assert_int_equal(take_stroke(INTERACT_PULL, 0, 0, 0.1, pushes), 1);
+  assert_near3(pushes[0].acceleration, 0, 0, 2 * 9.81, 1e-3);
+}
+
+static void the_ray_goes_through_the_cursor(void **state) {
+  (void)state;
+  SimPush pushes[INTERACT_MAX_PUSHES];
+  RenderView view = front_view();
+  take_stroke(INTERACT_PUSH, 90, -60, 0.1, pushes);
+  float point[3], x, y;
+  for (int k = 0; k < 3; k++) point[k] = pushes[0].origin[k] + 3 * pushes[0].direction[k];
+  assert_true(camera_project(&view, point, WIDTH, HEIGHT, &x, &y));
+  assert_near(x, WIDTH / 2.0 + 90, 0.01);
+  assert_near(y, HEIGHT / 2.0 - 60, 0.01);
+  assert_near(pushes[0].radius, strength_of_tank().radius, 0);
+}
+
+static void a_long_stroke_is_felt_all_along(void **state) {
+  (void)state;
+  SimPush pushes[INTERACT_MAX_PUSHES];
+  assert_int_equal(take_stroke(INTERACT_PUSH, 5, 0, 0.1, pushes), 1);
+  int count = take_stroke(INTERACT_PUSH, 300, 0, 0.1, pushes);
+  assert_true(count > 3 && count <= INTERACT_MAX_PUSHES);
+  for (int i = 0; i < count; i++) {
+    // In the plane of the water (z = 0.5), rays are apart by at most the reach of the hand.
+    double along = (0.5 - pushes[i].origin[2]) / pushes[i].direction[2];
+    double x = pushes[i].origin[0] + along * pushes[i].direction[0];
+    double metres = 2 * 4.5 * tan(19 * 3.14159265358979 / 180) / HEIGHT * 300;
+    assert_near(x, 1 + metres * (1 - (double)i / count), 1e-3);
+    assert_true(metres / count <= strength_of_tank().radius * 1.0001);
+  }
+  assert_int_equal(take_stroke(INTERACT_PUSH, 1e7f, 0, 0.1, pushes), INTERACT_MAX_PUSHES);
+}
+
+static void each_way_is_taken_once(void **state) {
+  (void)state;
+  InteractStrength strength = strength_of_tank();
+  RenderView view = front_view();
+  SimPush pushes[INTERACT_MAX_PUSHES];
+  Interact hand;
+  interact_begin(&hand, INTERACT_PUSH, 100, 100);
+  for (int i = 1; i <= 10; i++) interact_move(&hand, 100 + 30 * (float)i, 100); // several events, one frame
+  interact_take(&hand, &strength, &view, WIDTH, HEIGHT, 0.01, pushes);
+  assert_near(pushes[0].acceleration[0], 4 * 9.81, 1e-3);
+  assert_int_equal(interact_take(&hand, &strength, &view, WIDTH, HEIGHT, 0.01, pushes), 1); // still since then
+  assert_near3(pushes[0].acceleration, 2 * 9.81 * pushes[0].direction[0], 2 * 9.81 * pushes[0].direction[1],
+               2 * 9.81 * pushes[0].direction[2], 1e-3);
+  interact_end(&hand);
+  assert_int_equal(interact_take(&hand, &strength, &view, WIDTH, HEIGHT, 0.01, pushes), 0);
+}
+
+static void nonsense_gives_no_push(void **state) {
+  (void)state;
+  SimPush pushes[INTERACT_MAX_PUSHES];
+  assert_int_equal(take_stroke(INTERACT_PUSH, NAN, 0, 0.1, pushes), 0);
+  assert_int_equal(take_stroke(INTERACT_PUSH, INFINITY, 0, 0.1, pushes), 0);
+  assert_int_equal(take_stroke(INTERACT_PUSH, 10, 0, 0, pushes), 0);
+  assert_int_equal(take_stroke(INTERACT_PUSH, 10, 0, NAN, pushes), 0);
+}
+
+static void an_eye_in_the_water_still_pushes_finitely(void **state) {
+  (void)state;
+  InteractStrength strength = strength_of_tank();
+  RenderView view = {.eye = {1, 0.25f, 0.5f}, .target = {1, 0.25f, -1}, .vertical_fov = 38};
+  SimPush pushes[INTERACT_MAX_PUSHES];
+  Interact hand;
+  interact_begin(&hand, INTERACT_PUSH, 100, 100);
+  interact_move(&hand, 300, 100);
+  int count = interact_take(&hand, &strength, &view, WIDTH, HEIGHT, 0.01, pushes);
+  assert_true(count >= 1);
+  for (int k = 0; k < 3; k++) assert_true(isfinite(pushes[0].acceleration[k]));
+  assert_true(pushes[0].acceleration[0] > 0);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(strength_follows_size_and_gravity),
+      cmocka_unit_test(an_idle_hand_does_nothing),
+      cmocka_unit_test(a_fast_stroke_drags_in_its_direction),
+      cmocka_unit_test(a_stroke_follows_the_picture_not_the_world),
+      cmocka_unit_test(a_slow_stroke_is_weak),
+      cmocka_unit_test(a_still_hand_presses_or_lifts_along_the_ray),
+      cmocka_unit_test(the_ray_goes_through_the_cursor),
+      cmocka_unit_test(a_long_stroke_is_felt_all_along),
+      cmocka_unit_test(each_way_is_taken_once),
+      cmocka_unit_test(nonsense_gives_no_push),
+      cmocka_unit_test(an_eye_in_the_water_still_pushes_finitely),
+  };
+  return cmocka_run_group_tests_name("app_interact", tests, NULL, NULL);
+}
