@@ -1,0 +1,28 @@
+// A program of somebody else's that embeds both libraries: it must build and run from an installed Lido.
+#include <stdio.h>
+
+#include "render/render.h"
+#include "sim/sim.h"
+
+int main(void) {
+  SimError error;
+  SimWorldDef def = sim_default_world_def();
+  SimBlockDef block = {.min = {0.1f, 0.1f, 0.1f}, .max = {0.5f, 0.5f, 0.5f}};
+  def.particle_radius = 0.05f;
+  def.blocks = &block;
+  def.block_count = 1;
+  SimWorld *world = sim_world_create(&def, &error);
+  SimFrameBuffer *buffer = sim_frame_buffer_create();
+  if (!world || !buffer || !sim_world_advance(world, 0.05, &error)) return 1;
+  const SimFrame *frame = sim_world_frame(world, SIM_NEED_ALL, buffer, &error);
+  if (!frame || frame->count != 64 || !render_style_exists("points")) return 2;
+
+  // Without a current context the renderer must refuse in one sentence, not crash.
+  RenderError render_error;
+  Render *render = render_create(64, 64, &render_error);
+  if (render) return 3;
+  printf("%d particles; %s\n", (int)frame->count, render_error.message);
+  sim_frame_buffer_destroy(buffer);
+  sim_world_destroy(world);
+  return sim_bytes_in_use() == 0 ? 0 : 4;
+}
