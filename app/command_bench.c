@@ -25,7 +25,7 @@ typedef struct Bench {
   Scene scene;
   SimWorld *world;
   SimFrameBuffer *buffer;
-  Context *context;   // NULL: no OpenGL here, only the simulator is timed
+  Context *context; // NULL: no OpenGL here, only the simulator is timed
   Render *render;
   RenderSettings settings;
   RenderView view;
@@ -95,7 +95,8 @@ static bool draw_frame(Bench *bench, const SimFrame *frame, bool counted, AppErr
   int count = render_pass_times(bench->render, passes, MAX_PASSES); // waits for the GPU
   double elapsed = now_ms() - start;
   if (!counted) return true;
-  for (int p = 0; p < count && p < MAX_PASSES; p++) add_sample(bench, "draw", passes[p].name, passes[p].gpu_milliseconds);
+  for (int p = 0; p < count && p < MAX_PASSES; p++)
+    add_sample(bench, "draw", passes[p].name, passes[p].gpu_milliseconds);
   add_sample(bench, "draw", "total", elapsed);
   return true;
 }
@@ -106,7 +107,8 @@ static bool open_bench(Bench *bench, const Options *options, AppError *error) {
   bench->view = scene_view(&bench->scene);
   if (options->style) bench->settings.style = options->style;
   bench->frame_seconds = 1 / options->fps;
-  bench->frames = options->last_frame > options->first_frame ? options->last_frame - options->first_frame : DEFAULT_FRAMES;
+  bench->frames =
+      options->last_frame > options->first_frame ? options->last_frame - options->first_frame : DEFAULT_FRAMES;
 
   SimError sim_error;
   SimWorldDef def = scene_world_def(&bench->scene);
