@@ -36,7 +36,7 @@ void interact_move(Interact *hand, float x, float y) {
 }
 
 void interact_end(Interact *hand) {
-  hand->mode = INTERACT_NONE;
+  hand->released = true;
 }
 
 // Metres that a pixel spans in the plane through the water.
@@ -67,10 +67,12 @@ static void stroke(const InteractStrength *strength, const RenderView *view, Int
 
 int interact_take(Interact *hand, const InteractStrength *strength, const RenderView *view, int width, int height,
                   double seconds, SimPush pushes[INTERACT_MAX_PUSHES]) {
-  double dx = (double)hand->x - hand->last_x, dy = (double)hand->y - hand->last_y;
+  double x = hand->x, y = hand->y, dx = x - hand->last_x, dy = y - hand->last_y;
+  InteractMode mode = hand->mode;
   hand->last_x = hand->x;
   hand->last_y = hand->y;
-  if (hand->mode == INTERACT_NONE || !isfinite(dx) || !isfinite(dy) || !(seconds > 0)) return 0;
+  if (hand->released) *hand = (Interact){.mode = INTERACT_NONE};
+  if (mode == INTERACT_NONE || !isfinite(dx) || !isfinite(dy) || !(seconds > 0)) return 0;
 
   // How fast is the hand, in metres per second?
   double metres = metres_per_pixel(strength, view, height);
@@ -83,9 +85,20 @@ int interact_take(Interact *hand, const InteractStrength *strength, const Render
     double back = (double)i / count;
     SimPush *push = &pushes[i];
     *push = (SimPush){.radius = strength->radius};
-    camera_ray(view, (float)(hand->x - back * dx), (float)(hand->y - back * dy), width, height, push->origin,
-               push->direction);
-    stroke(strength, view, hand->mode, dx * metres, -dy * metres, fast, push);
+    camera_ray(view, (float)(x - back * dx), (float)(y - back * dy), width, height, push->origin, push->direction);
+    stroke(strength, view, mode, dx * metres, -dy * metres, fast, push);
   }
   return count;
+}
+
+void interact_lean(const float gravity[3], const RenderView *view, float right, float away, float leaned[3]) {
+  float axes[3][3];
+  camera_axes(view, axes[0], axes[1], axes[2]);
+  // The level direction into the picture; up × right, so that it exists when looking straight down too.
+  const float level[3] = {axes[0][2], 0, -axes[0][0]};
+  double angle = sqrt((double)right * right + (double)away * away), strength = length3(gravity);
+  memcpy(leaned, gravity, 3 * sizeof *leaned);
+  if (!(angle > 0) || !(strength > 0)) return;
+  double side = strength * sin(angle) / angle;
+  for (int k = 0; k < 3; k++) leaned[k] = (float)(cos(angle) * gravity[k] + side * (right * axes[0][k] + away * level[k]));
 }

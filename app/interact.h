@@ -29,18 +29,26 @@ typedef struct Interact {
   InteractMode mode;
   float x, y;           ///< pixels, where the hand is
   float last_x, last_y; ///< pixels, where it was when the pushes were last taken
+  bool released;        ///< the button is up again, but what it did has not been taken yet
 } Interact;
 
 void interact_begin(Interact *hand, InteractMode mode, float x, float y);
 void interact_move(Interact *hand, float x, float y);
-void interact_end(Interact *hand);
+void interact_end(Interact *hand); ///< what it has done until now is still taken, so that no short click is lost
 
 /// Most pushes that one hand gives in a frame.
 #define INTERACT_MAX_PUSHES 8
 
 /// The pushes of the next frame, for a picture of width × height pixels that is seen by `view`; `seconds` is the time
-/// since the last call (> 0). Returns their number; 0 when no button is down. Forgets the way that they stand for.
+/// since the last call (> 0). Returns their number; 0 when no button was down. Forgets the way that they stand for.
 int interact_take(Interact *hand, const InteractStrength *strength, const RenderView *view, int width, int height,
                   double seconds, SimPush pushes[INTERACT_MAX_PUSHES]);
+
+/// Most that the tank leans when an arrow key is held, radians (20°).
+#define INTERACT_MAX_LEAN 0.34906585f
+
+/// Gravity in a tank that leans, as seen by `view`: to the right by `right` radians and away from the eye by `away`,
+/// so that water runs to that side of the picture. Its strength stays; without gravity there is nothing to lean.
+void interact_lean(const float gravity[3], const RenderView *view, float right, float away, float leaned[3]);
 
 #endif

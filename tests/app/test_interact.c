@@ -153,7 +153,43 @@ static void each_way_is_taken_once(void **state) {
   assert_near3(pushes[0].acceleration, 2 * 9.81 * pushes[0].direction[0], 2 * 9.81 * pushes[0].direction[1],
                2 * 9.81 * pushes[0].direction[2], 1e-3);
   interact_end(&hand);
+  assert_int_equal(interact_take(&hand, &strength, &view, WIDTH, HEIGHT, 0.01, pushes), 1); // the time until then
   assert_int_equal(interact_take(&hand, &strength, &view, WIDTH, HEIGHT, 0.01, pushes), 0);
+}
+
+static void a_short_click_is_not_lost(void **state) {
+  (void)state;
+  InteractStrength strength = strength_of_tank();
+  RenderView view = front_view();
+  SimPush pushes[INTERACT_MAX_PUSHES];
+  Interact hand;
+  interact_begin(&hand, INTERACT_PULL, 400, 200); // down, moved and up again within one frame
+  interact_move(&hand, 500, 200);
+  interact_end(&hand);
+  assert_true(interact_take(&hand, &strength, &view, WIDTH, HEIGHT, 0.01, pushes) >= 1);
+  assert_near3(pushes[0].acceleration, 4 * 9.81, 0, 0, 1e-3);
+  assert_int_equal(interact_take(&hand, &strength, &view, WIDTH, HEIGHT, 0.01, pushes), 0);
+}
+
+static void a_leaning_tank_sends_water_to_that_side(void **state) {
+  (void)state;
+  RenderView view = front_view();
+  float leaned[3], angle = INTERACT_MAX_LEAN;
+  interact_lean(earth, &view, angle, 0, leaned);
+  assert_near3(leaned, 9.81 * sin(angle), -9.81 * cos(angle), 0, 1e-5);
+  interact_lean(earth, &view, 0, angle, leaned); // away from the eye is −z here
+  assert_near3(leaned, 0, -9.81 * cos(angle), -9.81 * sin(angle), 1e-5);
+  interact_lean(earth, &view, 0.1f, -0.2f, leaned);
+  assert_near(sqrt((double)leaned[0] * leaned[0] + leaned[1] * leaned[1] + leaned[2] * leaned[2]), 9.81, 1e-4);
+  interact_lean(earth, &view, 0, 0, leaned);
+  assert_near3(leaned, 0, -9.81f, 0, 0);
+  const float none[3] = {0};
+  interact_lean(none, &view, angle, 0, leaned);
+  assert_near3(leaned, 0, 0, 0, 0);
+  // Looking straight down, away is up in the picture.
+  RenderView above = {.eye = {1, 5, 0.5f}, .target = {1, 0, 0.5f}, .vertical_fov = 38};
+  interact_lean(earth, &above, 0, angle, leaned);
+  assert_near3(leaned, 0, -9.81 * cos(angle), -9.81 * sin(angle), 1e-5);
 }
 
 static void nonsense_gives_no_push(void **state) {
@@ -190,6 +226,8 @@ int main(void) {
       cmocka_unit_test(the_ray_goes_through_the_cursor),
       cmocka_unit_test(a_long_stroke_is_felt_all_along),
       cmocka_unit_test(each_way_is_taken_once),
+      cmocka_unit_test(a_short_click_is_not_lost),
+      cmocka_unit_test(a_leaning_tank_sends_water_to_that_side),
       cmocka_unit_test(nonsense_gives_no_push),
       cmocka_unit_test(an_eye_in_the_water_still_pushes_finitely),
   };
