@@ -1,0 +1,168 @@
+#include "app/scene.h"
+
+#include <cjson/cJSON.h>
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "app/scene_parse.h"
+
+// ---- Reading the file ------------------------------------------------------------------------------------------------
+
+static bool too_large(const char *path, AppError *error) {
+  return app_fail(error, APP_BAD_INPUT, "%s: larger than %d MiB, the most that a scene may have", path,
+                  SCENE_MOST_BYTES / (1024 * 1024));
+}
+
+static FILE *open_file(const char *path, AppError *error) {
+  struct stat status;
+  if (stat(path, &status) == 0 && S_ISDIR(status.st_mode)) {
+    app_fail(error, APP_BAD_INPUT, "%s: is a directory, not a scene file", path);
+    return NULL;
+  }
+  FILE *file = fopen(path, "rb");
+  if (!file) app_fail(error, APP_BAD_INPUT, "%s: %s", path, strerror(errno));
+  return file;
+}
+
+/// Read all of the file, which need not tell its size, but never more than the limit. NULL and *error when that fails.
+static char *read_file(const char *path, size_t *size, AppError *error) {
+  FILE *file = open_file(path, error);
+  if (!file) return NULL;
+  char *data = NULL;
+  size_t used = 0;
+  for (size_t capacity = 64 * 1024;; capacity *= 2) {
+    char *larger = realloc(data, capacity);
+    if (!larger) {
+      app_fail(error, APP_FAILED, "%s: out of memory", path);
+      break;
+    }
+    data = larger;
+    used += fread(data + used, 1, capacity - used, file);
+    if (ferror(file)) {
+      app_fail(error, APP_BAD_INPUT, "%s: %s", path, strerror(errno));
+      break;
+    }
+    if (used > SCENE_MOST_BYTES) {
+      too_large(path, error);
+      break;
+    }
+    if (used == capacity) continue;
+    fclose(file);
+    *size = used;
+    return data;
+  }
+  fclose(file);
+  free(data);
+  return NULL;
+}
+
+// ---- Loading ---------------------------------------------------------------------------------------------------------
+
+static bool load_tree(const SceneSource *source, cJSON *root, Scene *scene) {
+  for (int i = 0; cJSON_IsObject(root) && i < source->set_count; i++)
+    if (!scene_apply_set(source, root, source->sets[i])) return false;
+  return scene_parse(source, root, scene) && scene_complete(source, root, scene);
+}
+
+bool scene_load_text(Scene *scene, const char *name, const char *text, size_t size, const char *const *sets,
+                     int set_count, AppError *error) {
+  *scene = (Scene){0};
+  if (size >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0) {
+    text += 3;
+    size -= 3;
+  }
+  SceneSource source = {name, text, size, sets, set_count, error};
+  if (size > SCENE_MOST_BYTES) return too_large(name, error);
+  if (!scene_check_syntax(&source)) return false;
+  cJSON *root = cJSON_ParseWithLength(text, size);
+  if (!root) return app_fail(error, APP_FAILED, "%s: out of memory", name);
+  bool good = load_tree(&source, root, scene);
+  cJSON_Delete(root);
+  if (!good) scene_free(scene);
+  return good;
+}
+
+bool scene_load(Scene *scene, const char *path, const char *const *sets, int set_count, AppError *error) {
+  *scene = (Scene){0};
+  char found[4096];
+  if (!path || !*path) return app_fail(error, APP_BAD_INPUT, "no scene is named");
+  if (!scene_find(path, found, sizeof found)) return scene_fail_not_found(path, error);
+  size_t size;
+  char *text = read_file(found, &size, error);
+  if (!text) return false;
+  bool good = scene_load_text(scene, found, text, size, sets, set_count, error);
+  free(text);
+  return good;
+}
+
+void scene_free(Scene *scene) {
+  free(scene->fluid);
+  free(scene->obstacles);
+  free(scene->events);
+  free(scene->blocks);
+  free(scene->solids);
+  *scene = (Scene){0};
+}
+
+// ---- Use -------------------------------------------------------------------------------------------------------------
+
+SimWorldDef scene_world_def(const Scene *scene) {
+  const SceneSimulation *simulation = &scene->simulation;
+  SimWorldDef def = sim_default_world_def();
+  def.solver = (SimSolver)simulation->solver;
+  def.particle_radius = simulation->particle_radius;
+  def.rest_density = simulation->rest_density;
+  def.support = simulation->support;
+  memcpy(def.gravity, simulation->gravity, sizeof def.gravity);
+  def.time_step = simulation->time_step;
+  def.cfl = simulation->cfl;
+  def.iterations = simulation->iterations;
+  def.viscosity = simulation->viscosity;
+  def.relaxation = simulation->relaxation;
+  def.tensile = simulation->tensile;
+  memcpy(def.container.min, scene->container.min, sizeof def.container.min);
+  memcpy(def.container.max, scene->container.max, sizeof def.container.max);
+  def.block_count = scene->fluid_count;
+  def.blocks = scene->blocks;
+  def.obstacle_count = scene->obstacles_count;
+  def.obstacles = scene->solids;
+  def.seed = simulation->seed;
+  def.jitter = simulation->jitter;
+  return def;
+}
+
+RenderSettings scene_render_settings(const Scene *scene) {
+  const SceneEnvironment *environment = &scene->environment;
+  RenderSettings settings = render_default_settings();
+  settings.style = scene->render.style;
+  memcpy(settings.sun_direction, scene->light.direction, sizeof settings.sun_direction);
+  memcpy(settings.sun_colour, scene->light.colour, sizeof settings.sun_colour);
+  settings.sun = scene->light.sun;
+  settings.shadow = scene->light.shadow;
+  settings.sky = (RenderSky)environment->sky;
+  memcpy(settings.sky_zenith, environment->sky_zenith, sizeof settings.sky_zenith);
+  memcpy(settings.sky_horizon, environment->sky_horizon, sizeof settings.sky_horizon);
+  settings.floor = (RenderFloor)environment->floor;
+  settings.floor_level = environment->floor_level;
+  settings.tile_size = environment->tile_size;
+  memcpy(settings.floor_colour[0], environment->checker_even, sizeof settings.floor_colour[0]);
+  memcpy(settings.floor_colour[1], environment->checker_odd, sizeof settings.floor_colour[1]);
+  settings.container_visible = scene->container.visible;
+  memcpy(settings.absorption, scene->render.absorption, sizeof settings.absorption);
+  settings.refractive_index = scene->render.refractive_index;
+  settings.tone_map = (RenderToneMap)scene->render.tone_map;
+  settings.exposure = scene->render.exposure;
+  settings.points.scale = scene->render.points.scale;
+  return settings;
+}
+
+RenderView scene_view(const Scene *scene) {
+  RenderView view = {.vertical_fov = scene->camera.fov};
+  memcpy(view.eye, scene->camera.eye, sizeof view.eye);
+  memcpy(view.target, scene->camera.target, sizeof view.target);
+  return view;
+}
