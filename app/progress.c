@@ -21,10 +21,6 @@ void progress_start(Progress *progress, int64_t total, bool quiet) {
   progress->colour = progress->terminal && !(no_colour && no_colour[0]);
 }
 
-double progress_seconds(const Progress *progress) {
-  return now() - progress->start;
-}
-
 // 75 → "1:15".
 static const char *clock_text(double seconds, char text[32]) {
   int64_t s = seconds < 0 ? 0 : seconds > 1e7 ? 10000000 : (int64_t)(seconds + 0.5);
@@ -73,4 +69,22 @@ void progress_end(Progress *progress) {
   fputs("\r\033[K", stderr);
   fflush(stderr);
   progress->open = false;
+}
+
+bool progress_conclude(Progress *progress, bool fine, int64_t kept, const char *where, AppError *error) {
+  progress_end(progress);
+  if (!fine) {
+    if (kept == 0) return false;
+    AppError cause = *error;
+    return app_fail(error, cause.code, "%.800s; %" PRId64 " of %" PRId64 " frames are in %.150s", cause.message, kept,
+                    progress->total, where);
+  }
+  if (kept < progress->total)
+    return app_fail(error, APP_FAILED, "interrupted: %" PRId64 " of %" PRId64 " frames written to %s", kept,
+                    progress->total, where);
+  char spent[32];
+  if (!progress->quiet)
+    fprintf(stderr, "lido: %" PRId64 " frame%s written to %s in %s\n", kept, kept == 1 ? "" : "s", where,
+            clock_text(now() - progress->start, spent));
+  return true;
 }

@@ -2,8 +2,9 @@
 #ifndef LIDO_APP_PROGRESS_H
 #define LIDO_APP_PROGRESS_H
 
-#include <stdbool.h>
 #include <stdint.h>
+
+#include "app/app.h"
 
 typedef struct Progress {
   bool quiet, terminal, colour;
@@ -20,7 +21,8 @@ void progress_step(Progress *progress, int64_t done);
 /// Take the bar away, so that a line can follow. May be called twice.
 void progress_end(Progress *progress);
 
-/// Seconds since progress_start.
-double progress_seconds(const Progress *progress);
+/// The last word of a run that gives `frames` to `where`. With `fine`: says how many were written unless quiet, or fails
+/// with APP_FAILED where Ctrl-C ended it early. Without: adds to *error how many frames are `kept` nevertheless.
+bool progress_conclude(Progress *progress, bool fine, int64_t kept, const char *where, AppError *error);
 
 #endif

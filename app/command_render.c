@@ -1,0 +1,159 @@
+// lido render: pictures, a film or raw frames of a scene or of particle files, without a window.
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/commands.h"
+#include "app/context.h"
+#include "app/progress.h"
+#include "app/record.h"
+#include "app/source.h"
+#include "app/stats.h"
+
+// Everything that a run holds, in the order in which it is made.
+typedef struct Job {
+  const Options *options;
+  RecordKind kind;
+  Source *source;
+  Context *context;
+  Render *render;
+  uint8_t *pixels; // a picture, (height, width, 3)
+  float *values;   // a raw layer, (height, width, 3)
+  Stats *stats;
+  Record *record;
+  const SimFrame *frame; // the present one
+  int64_t written;
+} Job;
+
+static bool render_fail(AppError *error, const RenderError *cause) {
+  return app_fail(error, APP_FAILED, "%s", cause->message);
+}
+
+// ---- Layers --------------------------------------------------------------------------------------------------------------------
+
+static bool has_layer(const char *style, const char *layer) {
+  for (int32_t i = 0; i < render_layer_count(style); i++)
+    if (strcmp(render_layer_name(style, i), layer) == 0) return true;
+  return false;
+}
+
+static bool no_layer(const char *style, const char *layer, AppError *error) {
+  char names[400] = "";
+  for (int32_t i = 0; i < render_layer_count(style); i++) {
+    size_t used = strlen(names);
+    snprintf(names + used, sizeof names - used, "%s%s", i ? ", " : "", render_layer_name(style, i));
+  }
+  return app_fail(error, APP_BAD_INPUT, "--layer %.100s: style '%s' has no such layer; it has: %s", layer, style,
+                  names);
+}
+
+// ---- Begin ---------------------------------------------------------------------------------------------------------------------
+
+// What is wrong with the command line beyond what its parser can know.
+static bool check(Job *job, AppError *error) {
+  const Options *options = job->options;
+  if (!options->output)
+    return app_fail(error, APP_BAD_INPUT, "-o: where to? Give a pattern like 'out/f_%%05d.png', 'film.mp4' or '-'");
+  if (!record_kind(options->output, &job->kind, error)) return false;
+  if (job->kind == RECORD_PFM && !options->layer)
+    return app_fail(error, APP_BAD_INPUT, "-o: '%s': .pfm holds the raw values of a layer, name one with --layer",
+                    options->output);
+  return true;
+}
+
+static bool begin_drawing(Job *job, AppError *error) {
+  const Options *options = job->options;
+  size_t size = (size_t)options->width * (size_t)options->height * 3;
+  job->context = context_create_headless(options->context, error);
+  if (!job->context) return false;
+  RenderError cause;
+  job->render = render_create(options->width, options->height, &cause);
+  if (!job->render) return render_fail(error, &cause);
+  job->pixels = malloc(size);
+  if (job->kind == RECORD_PFM) job->values = malloc(size * sizeof *job->values);
+  if (!job->pixels || (job->kind == RECORD_PFM && !job->values)) return app_fail(error, APP_FAILED, "out of memory");
+  return true;
+}
+
+static bool begin_recording(Job *job, AppError *error) {
+  const Options *options = job->options;
+  RecordDef def = {options->output, options->width, options->height, options->fps, source_count(job->source)};
+  if (options->stats && !(job->stats = stats_open(options->stats, error))) return false;
+  job->record = record_open(&def, error);
+  return job->record != NULL;
+}
+
+// ---- One frame -----------------------------------------------------------------------------------------------------------------
+
+static bool draw(Job *job, AppError *error) {
+  const RenderSettings *settings = source_settings(job->source);
+  const char *layer = job->options->layer;
+  job->frame = source_frame(job->source, render_style_needs(settings->style), error);
+  if (!job->frame) return false;
+  if (layer && !has_layer(settings->style, layer)) return no_layer(settings->style, layer, error);
+  if (layer && !render_show_layer(job->render, layer)) return no_layer(settings->style, layer, error);
+  RenderError cause;
+  return render_draw(job->render, job->frame, source_view(job->source), settings, &cause) || render_fail(error, &cause);
+}
+
+static bool record(Job *job, AppError *error) {
+  int64_t number = source_number(job->source);
+  if (job->kind != RECORD_PFM) {
+    render_read_rgb8(job->render, job->pixels);
+    return record_picture(job->record, number, job->pixels, error);
+  }
+  int32_t channels;
+  if (!render_read_layer(job->render, job->values, &channels))
+    return app_fail(error, APP_FAILED, "--layer %s: its values cannot be read", job->options->layer);
+  return record_values(job->record, number, job->values, channels, error);
+}
+
+static bool run(Job *job, AppError *error) {
+  Progress progress;
+  progress_start(&progress, source_count(job->source), job->options->quiet);
+  SourceStep step;
+  bool fine = true;
+  while (fine && (step = source_next(job->source, error)) != SOURCE_END) {
+    fine = step == SOURCE_FRAME && draw(job, error) && record(job, error);
+    if (!fine) break;
+    if (job->stats) stats_frame(job->stats, job->frame, source_world(job->source), job->render);
+    progress_step(&progress, ++job->written);
+  }
+  // A film that ended early is finished all the same, so that its frames so far are kept; one without frames is none.
+  int64_t kept = job->written;
+  AppError second;
+  if (kept > 0 && !record_close(job->record, fine ? error : &second)) {
+    fine = false;
+    if (job->kind == RECORD_FILM) kept = 0;
+  } else if (kept == 0) {
+    record_abort(job->record);
+  }
+  job->record = NULL;
+  const char *where = job->kind == RECORD_RAW ? "standard output" : job->options->output;
+  return progress_conclude(&progress, fine, kept, where, error);
+}
+
+static void end(Job *job) {
+  record_abort(job->record);
+  stats_abort(job->stats);
+  free(job->values);
+  free(job->pixels);
+  render_destroy(job->render);
+  context_destroy(job->context);
+  source_close(job->source);
+}
+
+bool command_render(const Options *options, AppError *error) {
+  Job job = {.options = options};
+  bool fine = check(&job, error) && (job.source = source_open(options, error)) != NULL && begin_drawing(&job, error) &&
+              begin_recording(&job, error);
+  if (fine) {
+    fine = run(&job, error);
+    // What was measured is kept, also when the run ended early; the first error is the one that is told.
+    AppError second;
+    fine = stats_close(job.stats, fine ? error : &second) && fine;
+    job.stats = NULL;
+  }
+  end(&job);
+  return fine;
+}
