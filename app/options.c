@@ -27,6 +27,7 @@ static bool whole(const char *text, const char **end, long low, long high, long 
   return errno == 0 && *number >= low && *number <= high;
 }
 
+/// Say why, and be false.
 static bool because(char *cause, size_t size, const char *text) {
   snprintf(cause, size, "%s", text);
   return false;
@@ -47,7 +48,12 @@ static bool read_style(Options *options, const char *value, char *cause, size_t 
   scene_choices_list(&choices, list, sizeof list);
   bool later = false;
   for (int i = choices.count; i < choices.with_later; i++) later = later || strcmp(value, choices.names[i]) == 0;
-  snprintf(cause, size, later ? "is not available in this version; available: %s" : "must be one of %s", list);
+  char printable[80];
+  text_printable(printable, sizeof printable, value, 40);
+  if (later)
+    snprintf(cause, size, "\"%s\" is not available in this version; available: %s", printable, list);
+  else
+    snprintf(cause, size, "must be one of %s, got \"%s\"", list, printable);
   return false;
 }
 
@@ -100,7 +106,7 @@ static bool read_context(Options *options, const char *value, char *cause, size_
 
 static bool read_threads(Options *options, const char *value, char *cause, size_t size) {
   long threads;
-  if (!whole(value, NULL, 1, 1024, &threads)) return because(cause, size, "must be a whole number in [1, 1024]");
+  if (!whole(value, NULL, 1, 256, &threads)) return because(cause, size, "must be a whole number in [1, 256]");
   options->threads = (int)threads;
   return true;
 }
@@ -185,7 +191,7 @@ typedef struct Option {
 
 // clang-format off
 static const Option option_table[] = {
-  {"output",    'o', "PATTERN",   RENDER | SIMULATE, read_output,    "where to: see below"},
+  {"output",    'o', "PATTERN",   RENDER | SIMULATE, read_output,    "where the frames go, like out/f_%05d.png"},
   {"style",     0,   "NAME",      DRAWS | CHECK,     read_style,     "how the water is drawn (lido list names the styles)"},
   {"size",      0,   "WxH",       DRAWS,             read_size,      "pixels of a picture, default 1280x720"},
   {"frames",    0,   "N|A:B",     RUNS,              read_frames,    "the first N frames, or those from A up to but not with B"},
@@ -254,8 +260,9 @@ static bool take_option(Parser *parser, const Option *option, const char *value)
   if (!seen) parser->given[parser->given_count++] = option;
   char cause[300], message[400], printable[120];
   if (option->read(parser->options, value ? value : "", cause, sizeof cause)) return true;
+  // What was given is added, unless the reader has said so already.
   snprintf(message, sizeof message, "%s, got \"%s\"", cause, text_printable(printable, sizeof printable, value, 80));
-  return refuse(parser, "--%s: %s", option->name, strstr(cause, "not available") ? cause : message);
+  return refuse(parser, "--%s: %s", option->name, strchr(cause, '"') ? cause : message);
 }
 
 static bool take_long(Parser *parser, const char *argument) {
@@ -315,8 +322,11 @@ static bool find_command(Parser *parser) {
     options->source = parser->words[1];
     return true;
   }
-  if (parser->word_count < 2) return true;
+  if (parser->word_count == 0) return true;
   const char *nearest = text_nearest(parser->words[0], names, COMMAND_COUNT);
+  // A lone word that is neither a scene nor like a command is left to the scene's own message.
+  char path[4096];
+  if (parser->word_count == 1 && (!nearest || scene_find(parser->words[0], path, sizeof path))) return true;
   if (nearest) return refuse(parser, "%s: unknown command, did you mean \"%s\"?", parser->words[0], nearest);
   return refuse(parser, "%s: unknown command (see lido --help)", parser->words[0], "");
 }

@@ -11,6 +11,8 @@
 
 #include "app/scene_parse.h"
 
+enum { MOST_SPACINGS = 100000 }; // from the origin to the container's walls
+
 /// What every check needs: the scene, and where its values came from.
 typedef struct Check {
   const SceneSource *source;
@@ -63,10 +65,11 @@ static bool overlap(const float a_min[3], const float a_max[3], const float b_mi
   return true;
 }
 
-/// Lattice points of a box filled with particles; as a double, because it may be huge.
+/// Lattice points of a box filled with particles, as the simulation counts them: at least one layer, and a hundredth of
+/// a spacing forgiven. As a double, because it may be huge.
 static double lattice_count(const float min[3], const float max[3], float radius) {
   double count = 1;
-  for (int i = 0; i < 3; i++) count *= floor(((double)max[i] - min[i]) / (2.0 * radius) + 1e-3);
+  for (int i = 0; i < 3; i++) count *= fmax(1, floor(((double)max[i] - min[i]) / (2.0 * (double)radius) + 0.01));
   return count;
 }
 
@@ -74,11 +77,8 @@ static bool check_block(const Check *check, const char *keys, const float min[3]
   const SceneContainer *container = &check->scene->container;
   float radius = check->scene->simulation.particle_radius;
   if (!check_box(check, keys, min, max)) return false;
-  if (!overlap(min, max, container->min, container->max, 0))
-    return fail_at(check, keys, "lies outside the container");
+  if (!overlap(min, max, container->min, container->max, 0)) return fail_at(check, keys, "lies outside the container");
   double count = lattice_count(min, max, radius);
-  if (count < 1)
-    return fail_at(check, keys, "is thinner than one particle (2 x particle_radius = %g m)", 2.0 * (double)radius);
   if (count > SIM_MAX_PARTICLES)
     return fail_at(check, keys, "would hold %.0f particles of radius %g m, more than the limit of %d", count,
                    (double)radius, SIM_MAX_PARTICLES);
@@ -123,6 +123,12 @@ static bool check_container(const Check *check) {
     if (container->max[i] - container->min[i] < spacing)
       return fail_at(check, "container", "is thinner in %c than one particle (2 x particle_radius = %g m)", "xyz"[i],
                      (double)spacing);
+  // Further out, single precision no longer resolves how particles move.
+  float farthest = MOST_SPACINGS * spacing;
+  for (int i = 0; i < 3; i++)
+    if (fabsf(container->min[i]) > farthest || fabsf(container->max[i]) > farthest)
+      return fail_at(check, "container", "must lie within %d particles (%g m) of the origin in %c", MOST_SPACINGS,
+                     (double)farthest, "xyz"[i]);
   return true;
 }
 

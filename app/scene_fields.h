@@ -57,7 +57,7 @@
   F(S, NUMBER,    relaxation,      "",         "[0.001, 10]",      "0.1",            "Softness of the density constraint (PBF); larger is softer and steadier.") \
   F(S, NUMBER,    tensile,         "",         "[0, 0.1]",         "0.003",          "Artificial pressure against clumping at the surface (PBF).") \
   F(S, REAL,      duration,        "s",        "(0, 3600]",        "6",              "How long the scene lasts when it is recorded.") \
-  F(S, SEED,      seed,            "",         "[0, 9007199254740992]", "1",         "Of every random choice.") \
+  F(S, SEED,      seed,            "",         "[0, 9007199254740991]", "1",         "Of every random choice.") \
   F(S, NUMBER,    jitter,          "spacings", "[0, 0.5]",         "0",              "Random displacement of the particles at the start.")
 
 #define SCENE_CONTAINER(F, O, L, V, S) \
@@ -109,18 +109,18 @@
 
 #define SCENE_ENVIRONMENT(F, O, L, V, S) \
   F(S, CHOICE,    sky,             "",         "clear | gradient", "\"clear\"",      "A clear day, or exactly two colours mixed by the height of the direction.") \
-  F(S, VECTOR,    sky_zenith,      "linear",   "[0, 1000]",        "[0.18, 0.36, 0.75]", "Gradient: the colour overhead.") \
-  F(S, VECTOR,    sky_horizon,     "linear",   "[0, 1000]",        "[0.75, 0.82, 0.9]", "Gradient: the colour at and below the horizon.") \
+  F(S, VECTOR,    sky_zenith,      "linear",   "[0, 1000]",        "[0.15, 0.35, 0.75]", "Gradient: the colour overhead.") \
+  F(S, VECTOR,    sky_horizon,     "linear",   "[0, 1000]",        "[0.8, 0.88, 0.95]", "Gradient: the colour at and below the horizon.") \
   F(S, CHOICE,    floor,           "",         "tiles | checker | none", "\"tiles\"", "Pale tiles with fine grout, exactly two unlit colours, or no floor at all.") \
   F(S, OPTIONAL,  floor_level,     "m",        "[-1000, 1000]",    "null",           "Height of the floor; null: the bottom of the container.") \
-  F(S, NUMBER,    tile_size,       "m",        "(0, 1000]",        "0.2",            "Edge of a tile or of a checker square.") \
+  F(S, NUMBER,    tile_size,       "m",        "[0.001, 1000]",       "0.2",            "Edge of a tile or of a checker square.") \
   F(S, VECTOR,    checker_even,    "linear",   "[0, 1000]",        "[0.8, 0.8, 0.8]", "Checker: colour where floor(x/size) + floor(z/size) is even.") \
   F(S, VECTOR,    checker_odd,     "linear",   "[0, 1000]",        "[0.2, 0.2, 0.2]", "Checker: colour elsewhere.")
 
 #define SCENE_RENDER(F, O, L, V, S) \
   F(S, STYLE,     style,           "",         "",                 "\"points\"",     "How the water is drawn.") \
   F(S, CHOICE,    tone_map,        "",         "none | filmic",    "\"filmic\"",     "none: pictures hold 255 × the linear value, for measurements.") \
-  F(S, NUMBER,    exposure,        "",         "(0, 1000]",        "1",              "Factor before the tone curve.") \
+  F(S, NUMBER,    exposure,        "",         "[0.001, 1000]",       "1",              "Factor before the tone curve.") \
   F(S, VECTOR,    absorption,      "1/m",      "[0, 10000]",       "[1.8, 0.42, 0.3]", "How strongly the water takes away red, green and blue light.") \
   F(S, NUMBER,    refractive_index, "",        "[1, 3]",           "1.333",          "Of the water.") \
   O(S, ScenePoints, points,        "The style points.")

@@ -88,7 +88,8 @@ static bool nearest_scene(const char *name, char *nearest, size_t size) {
   int count = 0;
   for (struct dirent *entry; count < 64 && (entry = readdir(listing));) {
     const char *ending = strstr(entry->d_name, ".json");
-    if (!ending || ending[5] || ending - entry->d_name >= 80) continue;
+    bool schema = strcmp(entry->d_name, "scene.schema.json") == 0;
+    if (!ending || ending[5] || schema || ending - entry->d_name >= 80) continue;
     snprintf(names[count], sizeof names[count], "%.*s", (int)(ending - entry->d_name), entry->d_name);
     pointers[count] = names[count];
     count++;
