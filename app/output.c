@@ -59,9 +59,9 @@ static bool make_one_folder(const char *folder, AppError *error) {
   struct stat status;
   if (stat(folder, &status) == 0) {
     if (S_ISDIR(status.st_mode)) return true;
-    return app_fail(error, APP_FAILED, "%s: cannot make this folder: a file of that name is there", folder);
+    return app_fail(error, APP_FAILED, "%.600s: cannot make this folder: a file of that name is there", folder);
   }
-  return app_fail(error, APP_FAILED, "%s: cannot make this folder: %s", folder, strerror(cause));
+  return app_fail(error, APP_FAILED, "%.600s: cannot make this folder: %s", folder, strerror(cause));
 }
 
 bool output_make_folder(const char *path, AppError *error) {
@@ -128,7 +128,7 @@ static void free_output(OutputFile *output) {
 }
 
 static void *open_failed(OutputFile *output, const char *path, AppError *error) {
-  app_fail(error, APP_FAILED, "%s: cannot be written: %s", path, strerror(errno));
+  app_fail(error, APP_FAILED, "%.600s: cannot be written: %s", path, strerror(errno));
   if (output) free_output(output);
   return NULL;
 }
@@ -189,7 +189,7 @@ bool output_commit(OutputFile *output, AppError *error) {
   }
   if (failed) {
     if (output->part[0]) unlink(output->part);
-    app_fail(error, APP_FAILED, "%s: cannot be written: %s", output->path, strerror(cause));
+    app_fail(error, APP_FAILED, "%.600s: cannot be written: %s", output->path, strerror(cause));
   }
   leftover_forget(output->slot);
   free_output(output);
