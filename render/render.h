@@ -109,6 +109,7 @@ bool render_style_exists(const char *style);
 /// A layer is an intermediate of the style: depth, normal … The background's own layers belong to every style.
 int32_t render_layer_count(const char *style);
 const char *render_layer_name(const char *style, int32_t index);
+const char *render_layer_summary(const char *style, int32_t index); ///< one line: what it is and its unit
 /// Show a layer instead of the picture in later draws; NULL: the picture. false: the style has no such layer.
 bool render_show_layer(Render *render, const char *layer);
 /// Read the shown layer's raw values from the last draw: rows from top to bottom, width·height·*channels floats (1 or 3).

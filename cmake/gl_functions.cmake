@@ -1,0 +1,18 @@
+# List every OpenGL function that the sources call: cmake -DOUTPUT=… -DSOURCES=a.c;b.c -P gl_functions.cmake
+# OSMesa needs the list (app/context_osmesa.c): there libepoxy cannot look functions up by itself.
+set(names "")
+foreach(path IN LISTS SOURCES)
+  file(READ ${path} text)
+  string(REGEX MATCHALL "[^A-Za-z0-9_]gl[A-Z][A-Za-z0-9]*[ \t\n]*\\(" calls "${text}")
+  foreach(call IN LISTS calls)
+    string(REGEX MATCH "gl[A-Z][A-Za-z0-9]*" name "${call}")
+    list(APPEND names ${name})
+  endforeach()
+endforeach()
+list(REMOVE_DUPLICATES names)
+list(SORT names)
+set(rows "")
+foreach(name IN LISTS names)
+  string(APPEND rows "GL_FUNCTION(${name})\n")
+endforeach()
+file(WRITE ${OUTPUT} "// Generated: every OpenGL function that the program calls.\n${rows}")

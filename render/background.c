@@ -1,0 +1,92 @@
+// What surrounds the water and is shared by all styles: sky, floor, obstacles, and the container's edges, of which the
+// back ones lie behind the water and the front ones over it.
+#include "render/picture.h"
+
+#include <stdio.h>
+
+#define EDGE_COUNT 12
+
+bool render_background_resize(RenderPicture *picture, RenderError *error) {
+  RenderBackground *background = &picture->background;
+  const GpuTextureDesc colour = {"background", picture->width, picture->height, GPU_RGBA32F, false};
+  return gpu_texture_create(&background->colour, &colour, error) &&
+         gpu_target_create(
+             &background->target,
+             &(GpuTargetDesc){.label = "background", .colour = {&background->colour}, .depth = &picture->depth}, error);
+}
+
+void render_background_destroy(RenderPicture *picture) {
+  RenderBackground *background = &picture->background;
+  gpu_program_destroy(&background->world_program);
+  gpu_program_destroy(&background->obstacle_program);
+  gpu_program_destroy(&background->edge_program[0]);
+  gpu_program_destroy(&background->edge_program[1]);
+  gpu_texture_destroy(&background->colour);
+  gpu_target_destroy(&background->target);
+}
+
+static GpuInputs sunlit_inputs(const RenderPicture *picture) {
+  return (GpuInputs){.textures = {[6] = &picture->sun_map.blurred, [7] = &picture->sun_map.solid},
+                     .frame = &picture->uniforms};
+}
+
+// Output: colour and depth of every pixel.
+static bool draw_world(RenderPicture *picture, RenderError *error) {
+  RenderBackground *background = &picture->background;
+  const GpuProgramDesc desc = {.label = "sky and floor", .file = "world.glsl", .defines = picture->defines};
+  if (!gpu_program_prepare(&background->world_program, &desc, error)) return false;
+  gpu_clear_depth(&background->target);
+  gpu_draw(picture->gpu, &(GpuDraw){
+                             .program = &background->world_program,
+                             .target = &background->target,
+                             .depth = GPU_DEPTH_WRITE,
+                             .in = sunlit_inputs(picture),
+                         });
+  return true;
+}
+
+// Output: colour and depth where a body is nearer.
+static bool draw_obstacles(RenderPicture *picture, RenderError *error) {
+  RenderBackground *background = &picture->background;
+  if (picture->obstacles.count == 0) return true;
+  const GpuProgramDesc desc = {.label = "obstacles", .file = "obstacles.glsl", .defines = picture->defines};
+  if (!gpu_program_prepare(&background->obstacle_program, &desc, error)) return false;
+  GpuDraw draw = {
+      .program = &background->obstacle_program,
+      .target = &background->target,
+      .vertices = 36 * picture->obstacles.count,
+      .depth = GPU_DEPTH_WRITE,
+      .cull = GPU_CULL_FRONT, // the far sides of the box are in view also from within it
+      .in = sunlit_inputs(picture),
+  };
+  draw.in.storage[0] = &picture->obstacles.bodies;
+  gpu_draw(picture->gpu, &draw);
+  return true;
+}
+
+static bool draw_edges(RenderPicture *picture, const GpuTarget *out, bool front, RenderError *error) {
+  if (picture->block.container_min[3] == 0) return true;
+  GpuProgram *program = &picture->background.edge_program[front];
+  char defines[sizeof picture->defines + 32];
+  snprintf(defines, sizeof defines, "%s%s", picture->defines, front ? "#define FRONT 1\n" : "");
+  const GpuProgramDesc desc = {.label = front ? "front edges" : "back edges", .file = "edges.glsl", .defines = defines};
+  if (!gpu_program_prepare(program, &desc, error)) return false;
+  gpu_draw(picture->gpu, &(GpuDraw){
+                             .program = program,
+                             .target = out,
+                             .vertices = 6 * EDGE_COUNT,
+                             .depth = GPU_DEPTH_TEST,
+                             .blend = GPU_BLEND_OVER,
+                             .in = {.frame = &picture->uniforms},
+                         });
+  return true;
+}
+
+bool render_background_draw(RenderPicture *picture, RenderError *error) {
+  return draw_world(picture, error) && draw_obstacles(picture, error) &&
+         draw_edges(picture, &picture->background.target, false, error);
+}
+
+bool render_front_edges_draw(RenderPicture *picture, RenderError *error) {
+  return draw_edges(picture, &picture->target, true, error);
+}

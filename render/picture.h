@@ -1,0 +1,133 @@
+// What one picture is made from: everything that the passes of all styles share. Internal to the renderer.
+//
+// A pass is one function with named inputs and outputs and no hidden state; render.c runs the shared ones and the
+// style's in the order
+//   particles (upload) → sun map → background → the style's passes → front edges of the container → compose.
+#ifndef LIDO_RENDER_PICTURE_H
+#define LIDO_RENDER_PICTURE_H
+
+#include "render/gpu.h"
+
+/// Distance from the eye below which nothing is drawn, m.
+#define RENDER_NEAR 1e-3f
+/// Particles farther than this from the origin are left out as invalid, m.
+#define RENDER_FARTHEST 1e6f
+
+/// The Frame block of frame.glsl, std140. Constant during a picture.
+typedef struct RenderFrameBlock {
+  float world_to_view[16];     // column major; rigid
+  float eye[4];                // m; near distance
+  float lens[4];               // tan of half the angle of view in x, y; picture size in pixels
+  float sun_direction[4];      // unit, towards the sun; 1 when there is a sun, else 0
+  float sun_colour[4];         // irradiance
+  float sun_u[4], sun_v[4];    // dot(p, xyz) + w is the place in the sun map, [0, 1]
+  float sun_map[4];            // metres across the map in u and v; –; –
+  float absorption[4];         // 1/m; reflectance at normal incidence F0
+  float sky_zenith[4];         // of the gradient sky; –
+  float sky_horizon[4];        // of the gradient sky; –
+  float floor_colour[2][4];    // of the checker; –
+  float floor_plane[4];        // level (m), tile size (m), distance at which tiles fade out (m), –
+  float container_min[4];      // m; water level of the container, 1 when it is drawn, else 0
+  float container_max[4];      // m; size of the scene (m)
+} RenderFrameBlock;
+
+/// The particles on the GPU: only those with a sensible position.
+typedef struct RenderParticles {
+  GpuBuffer spheres;           // (count) vec4: centre, radius of the particle at rest; m
+  GpuBuffer colours;           // (count) vec4: colour, linear; spray 0 … 1
+  int32_t count;
+  float bounds_min[3], bounds_max[3]; // m, of the particles taken; min > max when there are none
+  float *staging;              // (capacity, 8)
+  int32_t capacity;
+} RenderParticles;
+bool render_particles_upload(RenderParticles *particles, const SimFrame *frame, RenderError *error);
+void render_particles_destroy(RenderParticles *particles);
+
+/// Solid bodies on the GPU, see obstacles.glsl.
+typedef struct RenderObstacles {
+  GpuBuffer bodies;            // (count) struct Body
+  int32_t count;
+} RenderObstacles;
+
+/// The scene as the sun sees it, from infinitely far away.
+typedef struct RenderSunMap {
+  GpuProgram water_program, blur_program[2], solid_program;
+  GpuTexture water;            // thickness (m), –, –, height of the water towards the sun (m): raw splats
+  GpuTexture half_blurred;
+  GpuTexture blurred;          // the same, smoothed: thickness, height, coverage, light focused on what lies below
+  GpuTexture solid;            // height of the nearest obstacle towards the sun (m)
+  GpuTarget water_target, solid_target;
+} RenderSunMap;
+
+/// Sky, floor, obstacles and the back edges of the container.
+typedef struct RenderBackground {
+  GpuProgram world_program, obstacle_program;
+  GpuProgram edge_program[2];  // back, front
+  GpuTexture colour;           // rgb: linear light; a: depth along the view axis (m), 0 for the sky
+  GpuTarget target;
+} RenderBackground;
+
+/// From linear light to bytes.
+typedef struct RenderCompose {
+  GpuProgram tone_program, smooth_program, layer_program;
+  GpuTexture toned, final;
+  GpuTarget toned_target, final_target;
+} RenderCompose;
+
+typedef struct RenderPicture {
+  Gpu *gpu;
+  const SimFrame *frame;
+  const RenderSettings *settings;
+  int32_t width, height;
+  GpuBuffer uniforms;          // the Frame block
+  RenderFrameBlock block;      // what is in it
+  char defines[256];           // compile-time choices: sky, floor, sun, shadow …
+  RenderParticles particles;
+  RenderObstacles obstacles;
+  RenderSunMap sun_map;
+  RenderBackground background;
+  RenderCompose compose;
+  GpuTexture depth;            // reversed depth of everything drawn so far: background, then the style's surface
+  GpuTexture colour;           // the style's picture in linear light
+  GpuTarget target;            // colour and depth: where a style draws its picture
+} RenderPicture;
+
+/// Camera, sun and environment into the Frame block and the compile-time choices.
+bool render_frame_block_write(RenderPicture *picture, const RenderView *view, RenderError *error);
+
+bool render_obstacles_upload(RenderPicture *picture, RenderError *error);
+
+bool render_sun_map_create(RenderPicture *picture, RenderError *error);
+void render_sun_map_destroy(RenderPicture *picture);
+bool render_sun_map_draw(RenderPicture *picture, RenderError *error);
+
+bool render_background_resize(RenderPicture *picture, RenderError *error);
+void render_background_destroy(RenderPicture *picture);
+bool render_background_draw(RenderPicture *picture, RenderError *error);
+/// The edges of the container that lie between the eye and the water, over the finished picture.
+bool render_front_edges_draw(RenderPicture *picture, RenderError *error);
+
+/// How a layer is turned into something to look at.
+typedef enum RenderMap {
+  RENDER_MAP_DEPTH = 0,        // metres, near bright to far dark on a repeating hue; 0 black
+  RENDER_MAP_NORMAL,           // n·0.5 + 0.5; zero vector black
+  RENDER_MAP_SCALAR,           // from 0 (dark blue) over green to `top` (yellow)
+  RENDER_MAP_COLOUR            // linear light, tone-mapped
+} RenderMap;
+
+typedef struct RenderLayer {
+  const char *name;
+  const char *summary;         // what it is and its unit
+  RenderMap map;
+  size_t texture;              // offset of the GpuTexture in the style's state (or in RenderPicture)
+  int32_t channel, channels;   // first channel and how many: 1 or 3
+  float top;                   // of RENDER_MAP_SCALAR
+} RenderLayer;
+
+bool render_compose_resize(RenderPicture *picture, RenderError *error);
+void render_compose_destroy(RenderPicture *picture);
+bool render_compose_draw(RenderPicture *picture, RenderError *error);
+bool render_compose_layer(RenderPicture *picture, const RenderLayer *layer, const GpuTexture *texture,
+                          RenderError *error);
+
+#endif

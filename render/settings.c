@@ -1,0 +1,90 @@
+// Default settings, and what makes settings and views acceptable.
+#include "render/settings.h"
+
+#include <math.h>
+
+#define SETTINGS_COOKIE 0x4c69646fu
+
+RenderSettings render_default_settings(void) {
+  return (RenderSettings){
+      .cookie = SETTINGS_COOKIE,
+      .style = "points",
+      .sun_direction = {-0.45f, 0.75f, 0.5f},
+      .sun_colour = {3.0f, 2.85f, 2.58f},
+      .sun = true,
+      .shadow = true,
+      .sky = RENDER_SKY_CLEAR,
+      .sky_zenith = {0.15f, 0.35f, 0.75f},
+      .sky_horizon = {0.80f, 0.88f, 0.95f},
+      .floor = RENDER_FLOOR_TILES,
+      .floor_level = NAN,
+      .tile_size = 0.2f,
+      .floor_colour = {{0.8f, 0.8f, 0.8f}, {0.2f, 0.2f, 0.2f}},
+      .container_visible = true,
+      .absorption = {1.8f, 0.42f, 0.30f},
+      .refractive_index = 1.333f,
+      .tone_map = RENDER_TONE_FILMIC,
+      .exposure = 1,
+      .points = {.scale = 1.25f},
+  };
+}
+
+static bool all_finite(const float *values, int count) {
+  for (int i = 0; i < count; ++i) {
+    if (!isfinite(values[i]) || fabsf(values[i]) > RENDER_FARTHEST) return false;
+  }
+  return true;
+}
+
+static bool in_range(float value, float low, float high) {
+  return value >= low && value <= high; // false for NaN
+}
+
+static bool all_in_range(const float *values, int count, float low, float high) {
+  for (int i = 0; i < count; ++i) {
+    if (!in_range(values[i], low, high)) return false;
+  }
+  return true;
+}
+
+static bool is_zero(const float v[3]) {
+  return v[0] == 0 && v[1] == 0 && v[2] == 0;
+}
+
+bool render_settings_check(const RenderSettings *s, RenderError *error) {
+  if (s->cookie != SETTINGS_COOKIE) return gpu_fail(error, "settings were not made by render_default_settings");
+  if (!all_finite(s->sun_direction, 3) || is_zero(s->sun_direction)) {
+    return gpu_fail(error, "the sun's direction must be finite and not zero");
+  }
+  if (!all_in_range(s->sun_colour, 3, 0, 1e4f)) return gpu_fail(error, "the sun's colour must be in [0, 10000]");
+  if ((unsigned)s->sky > RENDER_SKY_GRADIENT) return gpu_fail(error, "unknown sky %d", (int)s->sky);
+  if ((unsigned)s->floor > RENDER_FLOOR_NONE) return gpu_fail(error, "unknown floor %d", (int)s->floor);
+  if ((unsigned)s->tone_map > RENDER_TONE_FILMIC) return gpu_fail(error, "unknown tone map %d", (int)s->tone_map);
+  if (!all_in_range(s->sky_zenith, 3, 0, 1e4f) || !all_in_range(s->sky_horizon, 3, 0, 1e4f) ||
+      !all_in_range(s->floor_colour[0], 3, 0, 1e4f) || !all_in_range(s->floor_colour[1], 3, 0, 1e4f)) {
+    return gpu_fail(error, "colours of sky and floor must be in [0, 10000]");
+  }
+  if (!isnan(s->floor_level) && !in_range(s->floor_level, -RENDER_FARTHEST, RENDER_FARTHEST)) {
+    return gpu_fail(error, "the floor's level is out of range: %g", (double)s->floor_level);
+  }
+  if (!in_range(s->tile_size, 1e-4f, 1e6f)) return gpu_fail(error, "the tile size must be in [0.0001, 1000000] m");
+  if (!all_in_range(s->absorption, 3, 0, 1e6f)) return gpu_fail(error, "absorption must be in [0, 1000000] 1/m");
+  if (!in_range(s->refractive_index, 1, 3)) return gpu_fail(error, "the refractive index must be in [1, 3]");
+  if (!in_range(s->exposure, 1e-6f, 1e6f)) return gpu_fail(error, "the exposure must be in [0.000001, 1000000]");
+  if (!in_range(s->points.scale, 0.1f, 5)) return gpu_fail(error, "the scale of points must be in [0.1, 5]");
+  return true;
+}
+
+bool render_view_check(const RenderView *view, RenderError *error) {
+  if (!all_finite(view->eye, 3) || !all_finite(view->target, 3)) {
+    return gpu_fail(error, "the camera's eye and target must be finite, within 1000 km");
+  }
+  const float gaze[3] = {view->target[0] - view->eye[0], view->target[1] - view->eye[1],
+                         view->target[2] - view->eye[2]};
+  if (is_zero(gaze)) return gpu_fail(error, "the camera's eye and target are the same point");
+  if (!(view->vertical_fov > 1 && view->vertical_fov < 170)) {
+    return gpu_fail(error, "the camera's field of view must be in (1, 170) degrees, got %g",
+                    (double)view->vertical_fov);
+  }
+  return true;
+}

@@ -1,0 +1,12 @@
+// The filmic curve and the sRGB transfer.
+vec3 filmic(vec3 x) {
+  return clamp(x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14), 0.0, 1.0);
+}
+
+vec3 to_srgb(vec3 x) {
+  return mix(1.055 * pow(x, vec3(1.0 / 2.4)) - 0.055, 12.92 * x, lessThan(x, vec3(0.0031308)));
+}
+
+vec3 to_screen(vec3 light) {
+  return to_srgb(filmic(0.8 * max(light, 0.0)));
+}

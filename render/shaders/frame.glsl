@@ -1,0 +1,42 @@
+// What every shader knows about the picture: RenderFrameBlock of picture.h.
+layout(std140, binding = 0) uniform Frame {
+  mat4 world_to_view;   // rotation only: subtract the eye first
+  vec4 eye;             // m; near distance
+  vec4 lens;            // tan of half the angle of view in x, y; picture size in pixels
+  vec4 sun_direction;   // unit, towards the sun; 1 when there is a sun
+  vec4 sun_colour;      // irradiance
+  vec4 sun_u, sun_v;    // place in the sun map
+  vec4 sun_map;         // metres across the map
+  vec4 absorption;      // 1/m; F0
+  vec4 sky_zenith, sky_horizon;
+  vec4 floor_colour[2];
+  vec4 floor_plane;     // level, tile size, distance at which tiles fade out
+  vec4 container_min;   // m; 1 when it is drawn
+  vec4 container_max;   // m; size of the scene
+};
+
+const float PI = 3.14159265359;
+const float FAR = 1e9;
+
+// The ray through a place on the screen in [-1, 1]: its length along the view axis is 1, so that a parameter t along it
+// is the depth along the view axis.
+vec3 view_ray(vec2 place) {
+  return vec3(place * lens.xy, -1.0);
+}
+
+vec3 to_world(vec3 view_vector) {
+  return view_vector * mat3(world_to_view); // transposed: a rotation
+}
+
+vec3 to_view(vec3 world_point) {
+  return mat3(world_to_view) * (world_point - eye.xyz);
+}
+
+// Clip coordinates of a point in view space; depth is reversed and reaches to infinity.
+vec4 project(vec3 p) {
+  return vec4(p.xy / lens.xy, eye.w, -p.z);
+}
+
+float depth_of(float t) {
+  return eye.w / t;
+}

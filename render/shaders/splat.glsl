@@ -1,0 +1,119 @@
+// Spheres by ray casting, one quad around each. Compiled as SURFACE (normal, depth and colour of the nearest),
+// THICKNESS (metres of water along the eye's ray, added) or SUN (the same along the sun's rays, and the height of the
+// nearest surface).
+#include "frame.glsl"
+
+layout(std140, binding = 1) uniform Splat {
+  vec4 splat;           // radius factor, water per chord, target size in pixels
+  vec4 splat_unused;
+};
+
+#ifdef VERTEX_STAGE
+layout(std430, binding = 0) readonly buffer Spheres { vec4 spheres[]; };
+#ifdef SURFACE
+layout(std430, binding = 1) readonly buffer Colours { vec4 colours[]; };
+flat out vec4 tint;
+#endif
+flat out vec4 sphere;   // centre in view space (SUN: along the sun map's axes), radius
+noperspective out vec2 at; // SURFACE, THICKNESS: x and y of the pixel's ray; SUN: offset from the centre in metres
+
+const vec2 CORNERS[6] = vec2[6](vec2(-1, -1), vec2(1, -1), vec2(1, 1), vec2(-1, -1), vec2(1, 1), vec2(-1, 1));
+
+// Tangents of the directions in which the sphere begins and ends, as seen from the eye along one axis:
+// x is the centre's coordinate on that axis, d its depth.
+vec2 tangents(float x, float d, float r) {
+  float root = r * sqrt(x * x + d * d - r * r);
+  return vec2(x * d - root, x * d + root) / (d * d - r * r);
+}
+
+// Wholly beyond one of the four sides of the view, or nothing of it in front of the eye?
+bool outside(vec3 c, float r) {
+  vec2 side = (abs(c.xy) + c.z * lens.xy) * inversesqrt(1.0 + lens.xy * lens.xy);
+  return any(greaterThan(side, vec2(r))) || -c.z + r < eye.w;
+}
+
+void main() {
+  int index = gl_VertexID / 6;
+  vec2 corner = CORNERS[gl_VertexID % 6];
+  vec4 s = spheres[index];
+  float r = s.w * splat.x;
+#ifdef SURFACE
+  tint = colours[index];
+#endif
+#ifdef SUN
+  at = corner * r;
+  vec2 uv = vec2(dot(s.xyz, sun_u.xyz) + sun_u.w, dot(s.xyz, sun_v.xyz) + sun_v.w) + at / sun_map.xy;
+  sphere = vec4(0.0, 0.0, dot(s.xyz, sun_direction.xyz), r);
+  gl_Position = vec4(uv * 2.0 - 1.0, 0.0, 1.0);
+#else
+  vec3 c = to_view(s.xyz);
+  sphere = vec4(c, r);
+  // The whole screen for the few spheres that reach behind the eye; nothing for those around it.
+  vec2 low = -lens.xy, high = lens.xy;
+  if (-c.z > r * 1.001) {
+    vec2 across = tangents(c.x, -c.z, r), up = tangents(c.y, -c.z, r);
+    low = max(low, vec2(across.x, up.x));
+    high = min(high, vec2(across.y, up.y));
+  }
+  at = mix(low, high, corner * 0.5 + 0.5);
+  bool hidden = outside(c, r) || dot(c, c) < r * r;
+  gl_Position = hidden ? vec4(2.0, 2.0, 0.0, 1.0) : vec4(at / lens.xy, 0.0, 1.0);
+#endif
+}
+#endif
+
+#ifdef FRAGMENT_STAGE
+flat in vec4 sphere;
+noperspective in vec2 at;
+
+#ifdef SUN
+layout(location = 0) out vec4 result; // thickness, -, -, height
+
+void main() {
+  float h2 = sphere.w * sphere.w - dot(at, at);
+  if (h2 <= 0.0) discard;
+  float h = sqrt(h2);
+  result = vec4(2.0 * h * splat.y, 0.0, 0.0, sphere.z + h);
+}
+#else
+
+// Where the ray meets the sphere: depths of entry and exit; entry > exit when it misses. Measured from the foot of the
+// perpendicular from the centre, which stays precise for small spheres far away.
+vec2 meet(vec3 ray) {
+  float rr = dot(ray, ray);
+  float middle = dot(ray, sphere.xyz) / rr;
+  vec3 foot = ray * middle - sphere.xyz;
+  float h2 = (sphere.w * sphere.w - dot(foot, foot)) / rr;
+  float h = sqrt(max(h2, 0.0));
+  return h2 > 0.0 ? vec2(middle - h, middle + h) : vec2(1.0, 0.0);
+}
+
+#ifdef SURFACE
+flat in vec4 tint;
+layout(location = 0) out vec4 surface;
+layout(location = 1) out vec4 colour;
+
+void main() {
+  vec3 ray = vec3(at, -1.0);
+  vec2 t = meet(ray);
+  if (t.x > t.y || t.x < eye.w) discard;
+  surface = vec4(to_world((ray * t.x - sphere.xyz) / sphere.w), t.x);
+  colour = tint;
+  gl_FragDepth = depth_of(t.x);
+}
+#else
+layout(binding = 0) uniform sampler2D background;
+layout(location = 0) out vec4 thickness;
+
+void main() {
+  vec3 ray = vec3(at, -1.0);
+  vec2 t = meet(ray);
+  if (t.x > t.y) discard;
+  ivec2 pixel = ivec2(gl_FragCoord.xy * lens.zw / splat.zw);
+  float behind = texelFetch(background, pixel, 0).a;
+  float end = min(t.y, behind > 0.0 ? behind : FAR);
+  thickness = vec4(max(end - max(t.x, 0.0), 0.0) * length(ray) * splat.y, 0.0, 0.0, 0.0);
+}
+#endif
+#endif
+#endif

@@ -1,0 +1,104 @@
+// The scene as the sun sees it: water (thickness and height) and obstacles (height), in parallel projection over the box
+// around everything. Floor, obstacles and water look up there what light reaches them (sun.glsl).
+#include "render/picture.h"
+
+#include "render/splat.h"
+
+#define WATER_SIZE 256
+#define SOLID_SIZE 1024
+
+bool render_sun_map_create(RenderPicture *picture, RenderError *error) {
+  RenderSunMap *map = &picture->sun_map;
+  const GpuTextureDesc water = {"sun map: water", WATER_SIZE, WATER_SIZE, GPU_RGBA32F, false};
+  const GpuTextureDesc half_blurred = {"sun map: half blurred", WATER_SIZE, WATER_SIZE, GPU_RGBA32F, false};
+  const GpuTextureDesc blurred = {"sun map: blurred", WATER_SIZE, WATER_SIZE, GPU_RGBA32F, true};
+  const GpuTextureDesc solid = {"sun map: obstacles", SOLID_SIZE, SOLID_SIZE, GPU_R32F, false};
+  return gpu_texture_create(&map->water, &water, error) &&
+         gpu_texture_create(&map->half_blurred, &half_blurred, error) &&
+         gpu_texture_create(&map->blurred, &blurred, error) && gpu_texture_create(&map->solid, &solid, error) &&
+         gpu_target_create(&map->water_target, &(GpuTargetDesc){.label = "sun map: water", .colour = {&map->water}},
+                           error) &&
+         gpu_target_create(&map->solid_target, &(GpuTargetDesc){.label = "sun map: obstacles", .colour = {&map->solid}},
+                           error);
+}
+
+void render_sun_map_destroy(RenderPicture *picture) {
+  RenderSunMap *map = &picture->sun_map;
+  gpu_program_destroy(&map->water_program);
+  gpu_program_destroy(&map->blur_program[0]);
+  gpu_program_destroy(&map->blur_program[1]);
+  gpu_program_destroy(&map->solid_program);
+  gpu_texture_destroy(&map->water);
+  gpu_texture_destroy(&map->half_blurred);
+  gpu_texture_destroy(&map->blurred);
+  gpu_texture_destroy(&map->solid);
+  gpu_target_destroy(&map->water_target);
+  gpu_target_destroy(&map->solid_target);
+}
+
+// ---- Water -----------------------------------------------------------------------------------------------------------
+
+static bool prepare_blur(RenderSunMap *map, RenderError *error) {
+  const GpuProgramDesc first = {.label = "sun blur along u", .file = "sun_blur.glsl", .compute = true};
+  const GpuProgramDesc second = {
+      .label = "sun blur along v", .file = "sun_blur.glsl", .defines = "#define SECOND 1\n", .compute = true};
+  return gpu_program_prepare(&map->blur_program[0], &first, error) &&
+         gpu_program_prepare(&map->blur_program[1], &second, error);
+}
+
+// Input: the raw map. Output: the smoothed one.
+static void blur(RenderPicture *picture) {
+  RenderSunMap *map = &picture->sun_map;
+  // About one and a half particle spacings, and neither less than a texel nor more than the kernel is made for.
+  float sigma[4] = {0};
+  for (int i = 0; i < 2; ++i) {
+    const float texels = 3 * picture->frame->particle_radius * WATER_SIZE / picture->block.sun_map[i];
+    sigma[i] = texels > 1 ? (texels < 12 ? texels : 12) : 1;
+  }
+  const GpuTexture *const steps[3] = {&map->water, &map->half_blurred, &map->blurred};
+  for (int i = 0; i < 2; ++i) {
+    gpu_dispatch(
+        picture->gpu,
+        &(GpuDispatch){
+            .program = &map->blur_program[i],
+            .output = steps[i + 1],
+            .width = WATER_SIZE,
+            .height = WATER_SIZE,
+            .in = {.textures = {steps[i]}, .frame = &picture->uniforms, .params = sigma, .params_size = sizeof sigma},
+        });
+  }
+}
+
+// ---- Obstacles -------------------------------------------------------------------------------------------------------
+
+static bool draw_solids(RenderPicture *picture, RenderError *error) {
+  RenderSunMap *map = &picture->sun_map;
+  const GpuProgramDesc desc = {
+      .label = "obstacles from the sun", .file = "obstacles.glsl", .defines = "#define SUN 1\n"};
+  if (!gpu_program_prepare(&map->solid_program, &desc, error)) return false;
+  const float nothing[4] = {-1e9f, 0, 0, 0};
+  gpu_clear_colour(&map->solid_target, 0, nothing);
+  if (picture->obstacles.count == 0) return true;
+  gpu_draw(picture->gpu, &(GpuDraw){
+                             .program = &map->solid_program,
+                             .target = &map->solid_target,
+                             .vertices = 36 * picture->obstacles.count,
+                             .blend = GPU_BLEND_MAX,
+                             .in = {.storage = {&picture->obstacles.bodies}, .frame = &picture->uniforms},
+                         });
+  return true;
+}
+
+bool render_sun_map_draw(RenderPicture *picture, RenderError *error) {
+  const RenderSettings *settings = picture->settings;
+  if (!settings->sun || !settings->shadow) return true;
+  if (picture->frame->obstacle_count > 0 && !draw_solids(picture, error)) return false;
+  if (picture->particles.count == 0) return true;
+  if (!prepare_blur(&picture->sun_map, error)) return false;
+  if (!render_splat_sun(picture, &picture->sun_map.water_program, settings->points.scale,
+                        &picture->sun_map.water_target, error)) {
+    return false;
+  }
+  blur(picture);
+  return true;
+}

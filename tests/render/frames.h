@@ -1,0 +1,23 @@
+// Frames made by hand for the renderer's tests: no simulator needed.
+#ifndef LIDO_TESTS_RENDER_FRAMES_H
+#define LIDO_TESTS_RENDER_FRAMES_H
+
+#include "sim/frame.h"
+
+/// A frame that owns its arrays.
+typedef struct TestFrame {
+  SimFrame frame;
+  float *position, *velocity, *density;
+  uint32_t *id;
+  SimObstacle obstacles[8];
+} TestFrame;
+
+/// `capacity` particles of room, none there yet, in a tank of 3 × 1.6 × 1 m.
+TestFrame *test_frame_create(int32_t capacity, float particle_radius);
+void test_frame_destroy(TestFrame *frame);
+void test_frame_add(TestFrame *frame, float x, float y, float z);
+
+/// A pool with waves and some drops above it, about 20,000 particles of radius 0.0175 m.
+TestFrame *test_frame_pool(void);
+
+#endif
