@@ -1,0 +1,43 @@
+// For tests that run the real program: a folder of their own, a run with its output caught, and small file helpers.
+#ifndef LIDO_TESTS_RUN_LIDO_H
+#define LIDO_TESTS_RUN_LIDO_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/// How a run differs from an ordinary one; zero means it does not.
+typedef struct LidoRun {
+  // Set before the run
+  const char *path_variable;  ///< value of PATH
+  uint64_t file_size_limit;   ///< bytes that it may write to one file (RLIMIT_FSIZE)
+  const char *interrupt_when; ///< Ctrl-C (SIGINT) as soon as this file is there
+  const char *stdout_to;      ///< file for standard output, instead of one of the helper's own
+  bool close_reader;          ///< standard output is a pipe whose reader goes away after some bytes
+
+  // Known after the run
+  int code;         ///< exit code, or 1000 + the signal that ended it
+  char text[16384]; ///< standard error
+  int lines;        ///< of it
+} LidoRun;
+
+/// Run `lido` with the arguments, the last one NULL.
+void lido_run(LidoRun *run, const char *const *arguments);
+#define LIDO(run, ...) lido_run(run, (const char *const[]){__VA_ARGS__, NULL})
+
+/// A fresh empty folder; at the end remove it with everything in it.
+void folder_make(char folder[256]);
+void folder_remove(const char *folder);
+/// "folder/name" in one of some static buffers.
+const char *in(const char *folder, const char *name);
+/// Number of entries in a folder, hidden ones included; -1 when it is not there.
+int folder_count(const char *folder);
+
+bool file_exists(const char *path);
+void file_put(const char *path, const void *bytes, size_t size);
+void file_put_text(const char *path, const char *text);
+/// The whole file (free it), with a 0 behind it. Fails the test when it cannot be read.
+uint8_t *file_get(const char *path, size_t *size);
+bool files_equal(const char *a, const char *b);
+
+#endif
