@@ -1,0 +1,39 @@
+// The wall's share of the density sum, tabulated: see wall.h.
+#include "sim/wall.h"
+
+#include <math.h>
+
+// V Σ W over the half lattice whose first layer is half a spacing behind the surface.
+static double half_lattice(double s, double spacing, double h) {
+  int reach = (int)ceil(h / spacing);
+  double sum = 0;
+  for (int k = 0; k <= reach; k++)
+    for (int j = -reach; j <= reach; j++)
+      for (int i = -reach; i <= reach; i++) {
+        double z = s + (k + 0.5) * spacing;
+        sum += sim_kernel_cubic(sqrt(z * z + spacing * spacing * (i * i + j * j)), h);
+      }
+  return sum;
+}
+
+// At the surface itself the half lattice gives not quite one half. It is blended so that f(0) = ½ and both sides meet;
+// from a quarter of a spacing on it is untouched.
+static double share_at(double s, double spacing, double h, double volume) {
+  double t = s / (0.25 * spacing), share = volume * half_lattice(s, spacing, h);
+  if (t >= 1) return share;
+  double at_surface = 0.5 / (volume * half_lattice(0, spacing, h));
+  return share * (at_surface + (1 - at_surface) * t * t * (3 - 2 * t));
+}
+
+void sim_wall_make(SimWall *wall, const SimCubic *cubic) {
+  double spacing = cubic->spacing, h = cubic->h, reach = h - spacing / 2, step = reach / SIM_WALL_STEPS;
+  wall->reach = (float)reach;
+  wall->inverse_step = (float)(1 / step);
+  for (int k = 0; k <= SIM_WALL_STEPS + 1; k++) {
+    double s = k * step, e = step / 2;
+    wall->share[k] = (float)share_at(s, spacing, h, cubic->volume);
+    wall->slope[k] =
+        (float)((share_at(s + e, spacing, h, cubic->volume) - share_at(fabs(s - e), spacing, h, cubic->volume)) /
+                (s < e ? e : 2 * e));
+  }
+}

@@ -1,0 +1,41 @@
+// How much a solid half-space adds to a particle's density sum.
+//
+// Behind a flat wall imagine the fluid's own cubic lattice to go on, its first layer half a spacing behind the surface.
+// f(s) = V Σ W over that half lattice, for a particle at distance s. At s = spacing/2, where the first layer of water
+// lies at rest, it is exactly what is missing there, so water neither stacks on a wall nor shuns it. Akinci et al. 2012
+// get the same from particles on the wall; the sum in closed form needs none and leaves no bumps.
+//
+// For s < 0 (a point behind the surface) f(s) = 1 − f(−s): the lattice on both sides of the surface is whole.
+// The cubic spline is close to a Gaussian, so the parts along x, y and z nearly factor: what is free of two walls that
+// meet in an edge is (1 − f₁)(1 − f₂). In the lattice's edge this is right to 0.4 %, in its corner to 1 % (test_boundary).
+#ifndef LIDO_SIM_WALL_H
+#define LIDO_SIM_WALL_H
+
+#include "sim/kernels.h"
+
+#define SIM_WALL_STEPS 512
+
+typedef struct SimWall {
+  float reach;        ///< m: f = 0 beyond
+  float inverse_step; ///< 1/m
+  float share[SIM_WALL_STEPS + 2]; ///< f at the distances 0, step, 2 step …
+  float slope[SIM_WALL_STEPS + 2]; ///< df/ds, 1/m, never positive
+} SimWall;
+
+void sim_wall_make(SimWall *wall, const SimCubic *cubic);
+
+/// f(s) and its derivative.
+static inline float sim_wall_share(const SimWall *wall, float s, float *slope) {
+  float t = (s < 0 ? -s : s) * wall->inverse_step;
+  if (t >= SIM_WALL_STEPS) {
+    *slope = 0;
+    return s < 0 ? 1 : 0;
+  }
+  int32_t k = (int32_t)t;
+  float u = t - (float)k;
+  *slope = wall->slope[k] + u * (wall->slope[k + 1] - wall->slope[k]);
+  float share = wall->share[k] + u * (wall->share[k + 1] - wall->share[k]);
+  return s < 0 ? 1 - share : share;
+}
+
+#endif
