@@ -1,5 +1,6 @@
 #include "app/hud.h"
 
+#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
@@ -8,7 +9,8 @@
 #if defined(__GNUC__)
 __attribute__((format(printf, 3, 4)))
 #endif
-static void add(char *text, size_t size, const char *format, ...) {
+static void
+add(char *text, size_t size, const char *format, ...) {
   size_t used = strlen(text);
   va_list arguments;
   va_start(arguments, format);
@@ -79,4 +81,25 @@ void hud_measure(const char *text, int *lines, int *columns) {
     if (*text == '\n') ++*lines;
     if (column > *columns) *columns = column;
   }
+}
+
+char *hud_block(const char *text, char *block, size_t size) {
+  int lines = 0, columns = 0, column = 0;
+  size_t used = 0;
+  hud_measure(text, &lines, &columns);
+  for (const char *c = text; lines > 0 && used + 1 < size; c++) {
+    if (*c == '\n' || *c == '\0')
+      while (column < columns && used + 1 < size) block[used++] = ' ', column++;
+    if (*c == '\0' || used + 1 >= size) break;
+    block[used++] = *c;
+    column = *c == '\n' ? 0 : column + 1;
+  }
+  block[used] = '\0';
+  return block;
+}
+
+int hud_scale(float monitor_scale, int width, int columns) {
+  int scale = (int)fminf(fmaxf(roundf(2 * monitor_scale), 1), 16);
+  while (scale > 1 && (columns + 2) * HUD_GLYPH_WIDTH * scale > width) scale--;
+  return scale;
 }

@@ -7,6 +7,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+// clang-format off
 /// What the keys of the window do: X(key, its name, action, what it does). `key` is GLFW's name without GLFW_KEY_,
 /// `action` a function window_do_… of the window; keys without a name are second keys for the line above.
 /// The help is made from this table and the one below, so it cannot tell anything else than what happens.
@@ -33,6 +34,7 @@
   X("Right drag",   "push the water, also with Ctrl + left") \
   X("Shift + right", "pull the water, also with Ctrl + Shift + left") \
   X("Arrow keys",   "lean the tank while they are held")
+// clang-format on
 
 /// Write the help. Returns `text`.
 char *hud_help(char *text, size_t size);
@@ -41,9 +43,9 @@ typedef struct HudFigures {
   const char *style, *layer; ///< layer NULL: the picture
   int32_t particles;
   int64_t frame;
-  double time;               ///< s, simulated
-  double frames_per_second;  ///< drawn; 0: not known yet
-  double speed;              ///< simulated seconds a second; 0: paused
+  double time;              ///< s, simulated
+  double frames_per_second; ///< drawn; 0: not known yet
+  double speed;             ///< simulated seconds a second; 0: paused
   double simulate_ms, draw_ms;
   bool paused;
 } HudFigures;
@@ -57,5 +59,15 @@ char *hud_wrap(const char *message, int columns, char *text, size_t size);
 
 /// Lines of a text, and characters of its longest line.
 void hud_measure(const char *text, int *lines, int *columns);
+
+/// Fill every line with spaces to the length of the longest, so that the veil behind the text is one block.
+char *hud_block(const char *text, char *block, size_t size);
+
+/// A character of render_text at scale 1, pixels.
+enum { HUD_GLYPH_WIDTH = 6, HUD_LINE_HEIGHT = 11 };
+
+/// The scale for a text of `columns` characters in a window of `width` pixels: twice the monitor's, less where it would
+/// not fit, at least 1.
+int hud_scale(float monitor_scale, int width, int columns);
 
 #endif

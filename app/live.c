@@ -15,18 +15,18 @@ struct Live {
   double fps;
   Pipeline *pipeline;
   SimFrameBuffer *buffers[2];
-  LiveFrame frames[2];  // one per slot of the pipeline
+  LiveFrame frames[2]; // one per slot of the pipeline
 
   // The job at hand: written by the caller before it starts, by the worker while it runs.
   LiveJob job;
   LiveInput input;
   SimWorld *world;
-  int64_t index;        // of the frame that the world's state is
-  bool ok;              // the job's outcome …
-  AppError error;       // … and why it failed
+  int64_t index;  // of the frame that the world's state is
+  bool ok;        // the job's outcome …
+  AppError error; // … and why it failed
 
   // The caller's own: it may be read while the worker runs.
-  bool failed;          // stands still until reset
+  bool failed; // stands still until reset
   AppError failure;
 };
 
@@ -40,8 +40,7 @@ static double now(void) {
 
 static bool advance(Live *live) {
   double step = 1 / live->fps;
-  if (!events_apply(live->scene, (double)live->index / live->fps, step, live->world, NULL, NULL, &live->error))
-    return false;
+  if (!events_apply(live->scene, (double)live->index * step, step, live->world, NULL, NULL, &live->error)) return false;
   // The hand comes after the timeline: where both want more pushes than act at once, the timeline has its way.
   for (int i = 0; i < live->input.push_count; i++) sim_world_push(live->world, &live->input.pushes[i]);
   if (live->input.set_gravity) sim_world_set_gravity(live->world, live->input.gravity);
@@ -53,13 +52,13 @@ static bool advance(Live *live) {
 
 static bool write_frame(Live *live, int slot, double begin) {
   SimError reason;
-  LiveFrame *out = &live->frames[slot];
-  *out = (LiveFrame){.needs = live->input.needs, .index = live->index, .time = (double)live->index / live->fps};
-  out->frame = sim_world_frame(live->world, live->input.needs, live->buffers[slot], &reason);
-  if (!out->frame) return app_fail(&live->error, APP_FAILED, "%s", reason.message);
-  out->milliseconds = 1e3 * (now() - begin);
-  out->counts = sim_world_counts(live->world);
-  if (live->input.measure) out->measures = sim_world_measures(live->world);
+  const SimFrame *frame = sim_world_frame(live->world, live->input.needs, live->buffers[slot], &reason);
+  if (!frame) return app_fail(&live->error, APP_FAILED, "%s", reason.message);
+  live->frames[slot] = (LiveFrame){.frame = *frame,
+                                   .needs = live->input.needs,
+                                   .counts = sim_world_counts(live->world),
+                                   .milliseconds = 1e3 * (now() - begin)};
+  live->frames[slot].frame.index = live->index;
   return true;
 }
 

@@ -15,23 +15,19 @@ typedef struct Live Live;
 
 /// What acts during the next frame.
 typedef struct LiveInput {
-  unsigned needs;                       ///< SimNeed bits that the frame is to hold
-  bool measure;                         ///< fill LiveFrame.measures
+  unsigned needs; ///< SimNeed bits that the frame is to hold
   int push_count;
-  SimPush pushes[INTERACT_MAX_PUSHES];  ///< (push_count)
-  bool set_gravity;                     ///< gravity is `gravity` from now on, instead of the scene's or the last one
-  float gravity[3];                     ///< m/s²
+  SimPush pushes[INTERACT_MAX_PUSHES]; ///< (push_count)
+  bool set_gravity;                    ///< gravity is `gravity` from now on, instead of the scene's or the last one
+  float gravity[3];                    ///< m/s²
 } LiveInput;
 
 /// A frame that can be shown, and how it came about.
 typedef struct LiveFrame {
-  const SimFrame *frame;
-  unsigned needs;        ///< SimNeed bits that it holds
-  int64_t index;         ///< frames since the start
-  double time;           ///< s, index / fps
+  SimFrame frame; ///< its index counts frames since the start
+  unsigned needs; ///< SimNeed bits that it holds
   SimCounts counts;
-  SimMeasures measures;  ///< zero unless asked for
-  double milliseconds;   ///< wall time of the simulation
+  double milliseconds; ///< wall time of the simulation
 } LiveFrame;
 
 /// A world of the scene, and its frame 0. The scene must outlive it. NULL and *error: the scene cannot be simulated

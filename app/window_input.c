@@ -50,7 +50,10 @@ static void window_do_quit(WindowInput *input) {
 }
 
 void window_input_key(WindowInput *input, int key, int mods, bool repeated) {
-  static const struct { int key; void (*act)(WindowInput *); } rows[] = {
+  static const struct {
+    int key;
+    void (*act)(WindowInput *);
+  } rows[] = {
 #define WINDOW_KEY_ROW(key, name, action, does) {GLFW_KEY_##key, window_do_##action},
       WINDOW_KEYS(WINDOW_KEY_ROW)
 #undef WINDOW_KEY_ROW
@@ -78,8 +81,7 @@ static void begin_drag(WindowInput *input, int button, int mods) {
   else
     return;
   input->drag_button = button;
-  if (water)
-    interact_begin(&input->hand, shift ? INTERACT_PULL : INTERACT_PUSH, input->cursor[0], input->cursor[1]);
+  if (water) interact_begin(&input->hand, shift ? INTERACT_PULL : INTERACT_PUSH, input->cursor[0], input->cursor[1]);
 }
 
 // A second button during a drag changes nothing; the button that began it ends it.

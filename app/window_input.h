@@ -12,22 +12,22 @@ struct GLFWwindow;
 typedef enum WindowDrag { WINDOW_DRAG_NONE, WINDOW_DRAG_ORBIT, WINDOW_DRAG_PAN, WINDOW_DRAG_WATER } WindowDrag;
 
 typedef struct WindowInput {
-  Camera camera;         ///< moved by drags and the wheel
-  Interact hand;         ///< in the water
-  float lean[2];         ///< −1, 0 or 1: arrow keys held, to the right and away
-  int width, height;     ///< pixels of the framebuffer; 0 while minimised
-  float scale;           ///< of the monitor's content, 1: a pixel is a dot
+  Camera camera;     ///< moved by drags and the wheel
+  Interact hand;     ///< in the water
+  float lean[2];     ///< −1, 0 or 1: arrow keys held, to the right and away
+  int width, height; ///< pixels of the framebuffer; 0 while minimised
+  float scale;       ///< of the monitor's content, 1: a pixel is a dot
 
   WindowDrag drag;
-  int drag_button;       ///< which began it, and will end it
-  float cursor[2];       ///< pixels
+  int drag_button; ///< which began it, and will end it
+  float cursor[2]; ///< pixels
 
-  bool paused, help, figures; ///< switches
-  int steps;             ///< single steps asked for and not yet taken
-  int style;             ///< asked for by number, −1: none
-  int next_style, next_layer; ///< how often these were pressed
+  bool paused, help, figures;          ///< switches
+  int steps;                           ///< single steps asked for and not yet taken
+  int style;                           ///< asked for by number, −1: none
+  int next_style, next_layer;          ///< how often these were pressed
   bool reset, recentre, picture, quit; ///< asked for; the loop clears them
-  bool changed;          ///< the picture is out of date; the loop clears it
+  bool changed;                        ///< the picture is out of date; the loop clears it
 } WindowInput;
 
 /// Let the window's callbacks write into `input`, which must outlive it; camera, paused, help … are the caller's to set.

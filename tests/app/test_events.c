@@ -13,11 +13,11 @@
 #include "app/events.h"
 
 // A cube of water floating without gravity in the middle of a large tank, and a list of events.
-#define SCENE(events) \
-  "{\"version\": 1, \"simulation\": {\"particle_radius\": 0.025, \"gravity\": [0, 0, 0], \"viscosity\": 0}," \
-  " \"container\": {\"min\": [0, 0, 0], \"max\": [4, 4, 4]}," \
-  " \"camera\": {\"eye\": [0, 1, 5], \"target\": [0, 1, 0], \"fov\": 40}," \
-  " \"fluid\": [{\"type\": \"block\", \"min\": [1.8, 1.8, 1.8], \"max\": [2.2, 2.2, 2.2]}]," \
+#define SCENE(events)                                                                                                  \
+  "{\"version\": 1, \"simulation\": {\"particle_radius\": 0.025, \"gravity\": [0, 0, 0], \"viscosity\": 0},"           \
+  " \"container\": {\"min\": [0, 0, 0], \"max\": [4, 4, 4]},"                                                          \
+  " \"camera\": {\"eye\": [0, 1, 5], \"target\": [0, 1, 0], \"fov\": 40},"                                             \
+  " \"fluid\": [{\"type\": \"block\", \"min\": [1.8, 1.8, 1.8], \"max\": [2.2, 2.2, 2.2]}],"                           \
   " \"events\": [" events "]}"
 
 static void assert_near(double got, double want, double tolerance) {
@@ -105,9 +105,10 @@ static void too_many_pushes_are_an_error(void **state) {
   (void)state;
   char text[8192] = "";
   size_t used = 0;
-  used += (size_t)snprintf(text, sizeof text,
-                           "{\"version\": 1, \"simulation\": {\"particle_radius\": 0.05}, \"fluid\": [{\"min\": [0, 0, 0],"
-                           " \"max\": [0.3, 0.3, 0.3]}], \"events\": [");
+  used +=
+      (size_t)snprintf(text, sizeof text,
+                       "{\"version\": 1, \"simulation\": {\"particle_radius\": 0.05}, \"fluid\": [{\"min\": [0, 0, 0],"
+                       " \"max\": [0.3, 0.3, 0.3]}], \"events\": [");
   for (int i = 0; i <= SIM_MAX_PUSHES; i++)
     used += (size_t)snprintf(text + used, sizeof text - used,
                              "%s{\"type\": \"push\", \"duration\": 1, \"origin\": [0, 0, 1], \"direction\": [0, 0, -1],"
@@ -126,8 +127,9 @@ static void too_many_pushes_are_an_error(void **state) {
 
 // ---- Pour -----------------------------------------------------------------------------------------------------------
 
-#define POUR(time) \
-  "{\"type\": \"pour\", \"time\": " time ", \"min\": [0.5, 0.5, 0.5], \"max\": [0.7, 0.6, 0.6], \"velocity\": [1, 0, 0]}"
+#define POUR(time)                                                                                                     \
+  "{\"type\": \"pour\", \"time\": " time                                                                               \
+  ", \"min\": [0.5, 0.5, 0.5], \"max\": [0.7, 0.6, 0.6], \"velocity\": [1, 0, 0]}"
 
 static void a_pour_adds_particles_once(void **state) {
   (void)state;
@@ -184,7 +186,8 @@ static void events_on_a_border_belong_to_the_step_that_begins_there(void **state
   for (size_t r = 0; r < sizeof rates / sizeof rates[0]; r++) {
     for (int n = 0; n < 2000; n += 37) {
       char text[1024];
-      snprintf(text, sizeof text, "{\"version\": 1, \"events\": [{\"type\": \"style\", \"name\": \"points\", \"time\": %.17g}]}",
+      snprintf(text, sizeof text,
+               "{\"version\": 1, \"events\": [{\"type\": \"style\", \"name\": \"points\", \"time\": %.17g}]}",
                n / rates[r]);
       Scene scene = load(text);
       assert_int_equal(first_step(&scene, "points", 1 / rates[r], 2001), n);
@@ -202,9 +205,10 @@ static void any_cut_of_time_pours_each_once(void **state) {
                                  " \"container\": {\"min\": [0, 0, 0], \"max\": [10, 10, 10]}, \"events\": [");
   enum { POURS = 40 };
   for (int i = 0; i < POURS; i++)
-    used += (size_t)snprintf(text + used, sizeof text - used,
-                             "%s{\"type\": \"pour\", \"time\": %.17g, \"min\": [%d, %d, 1], \"max\": [%d.1, %d.1, 1.1]}",
-                             i ? ", " : "", i % 2 ? i * 0.05 : i / 24.0 * 1.2, 1 + i % 8, 1 + i / 8, 1 + i % 8, 1 + i / 8);
+    used +=
+        (size_t)snprintf(text + used, sizeof text - used,
+                         "%s{\"type\": \"pour\", \"time\": %.17g, \"min\": [%d, %d, 1], \"max\": [%d.1, %d.1, 1.1]}",
+                         i ? ", " : "", i % 2 ? i * 0.05 : i / 24.0 * 1.2, 1 + i % 8, 1 + i / 8, 1 + i % 8, 1 + i / 8);
   snprintf(text + used, sizeof text - used, "]}");
   Scene scene = load(text);
   uint32_t seed = 7;
@@ -215,8 +219,10 @@ static void any_cut_of_time_pours_each_once(void **state) {
     for (int n = 0; time < 2.5; n++) {
       if (cut >= 10) step = n % 3 ? random_bits(&seed) / 16777216.0 * 0.1 + 1e-4 : 0.05;
       apply(&scene, time, step, world);
-      if (cut < 10) time = (n + 1) * step;
-      else time += step;
+      if (cut < 10)
+        time = (n + 1) * step;
+      else
+        time += step;
     }
     assert_int_equal(sim_world_counts(world).particles, POURS);
     sim_world_destroy(world);
@@ -226,18 +232,22 @@ static void any_cut_of_time_pours_each_once(void **state) {
 
 // ---- Tilt -----------------------------------------------------------------------------------------------------------
 
-#define TILTS \
-  "{\"type\": \"tilt\", \"time\": 1, \"duration\": 2, \"gravity\": [4, -8, 0]}," \
-  "{\"type\": \"tilt\", \"time\": 2, \"duration\": 1, \"gravity\": [0, 0, 6]}," \
+#define TILTS                                                                                                          \
+  "{\"type\": \"tilt\", \"time\": 1, \"duration\": 2, \"gravity\": [4, -8, 0]},"                                       \
+  "{\"type\": \"tilt\", \"time\": 2, \"duration\": 1, \"gravity\": [0, 0, 6]},"                                        \
   "{\"type\": \"tilt\", \"time\": 5, \"gravity\": [0, -1, 0]}"
 
 static void a_tilt_reaches_its_gravity_linearly(void **state) {
   (void)state;
   Scene scene = load(SCENE(TILTS));
-  const struct { double time; float want[3]; } truth[] = {
-      {0, {0, 0, 0}},    {1, {0, 0, 0}},      {1.25, {0.5f, -1, 0}}, {1.5, {1, -2, 0}},
-      {2, {2, -4, 0}}, // the second one takes over where the first has come to
-      {2.5, {1, -2, 3}}, {3, {0, 0, 6}},      {4, {0, 0, 6}},        {5, {0, -1, 0}},    {100, {0, -1, 0}},
+  const struct {
+    double time;
+    float want[3];
+  } truth[] = {
+      {0, {0, 0, 0}},    {1, {0, 0, 0}},    {1.25, {0.5f, -1, 0}},
+      {1.5, {1, -2, 0}}, {2, {2, -4, 0}}, // the second one takes over where the first has come to
+      {2.5, {1, -2, 3}}, {3, {0, 0, 6}},    {4, {0, 0, 6}},
+      {5, {0, -1, 0}},   {100, {0, -1, 0}},
   };
   for (size_t i = 0; i < sizeof truth / sizeof truth[0]; i++) {
     float gravity[3];
@@ -293,8 +303,8 @@ static void the_style_changes_at_its_time(void **state) {
   scene_free(&scene);
 }
 
-#define MOVES \
-  "{\"type\": \"camera\", \"time\": 1, \"duration\": 2, \"eye\": [4, 3, 5], \"target\": [0, 1, 2], \"fov\": 60}," \
+#define MOVES                                                                                                          \
+  "{\"type\": \"camera\", \"time\": 1, \"duration\": 2, \"eye\": [4, 3, 5], \"target\": [0, 1, 2], \"fov\": 60},"      \
   "{\"type\": \"camera\", \"time\": 4, \"eye\": [9, 9, 9], \"target\": [1, 1, 1]}"
 
 static void the_camera_moves_smoothly(void **state) {
@@ -304,7 +314,10 @@ static void the_camera_moves_smoothly(void **state) {
   RenderView view = {.eye = {-1, -2, -3}, .vertical_fov = 12}, before = view;
   events_apply(&scene, 0.5, step, NULL, NULL, &view, NULL);
   assert_memory_equal(&view, &before, sizeof view); // nothing has begun: as given
-  const struct { double time; float eye[3], target_z, fov; } truth[] = {
+  const struct {
+    double time;
+    float eye[3], target_z, fov;
+  } truth[] = {
       {1, {0, 1, 5}, 0, 40},
       {1.5, {4 * 0.15625f, 1 + 2 * 0.15625f, 5}, 2 * 0.15625f, 40 + 20 * 0.15625f}, // smoothstep(¼) = 5/32
       {2, {2, 2, 5}, 1, 50},
