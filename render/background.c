@@ -26,8 +26,9 @@ void render_background_destroy(RenderPicture *picture) {
 }
 
 static GpuInputs sunlit_inputs(const RenderPicture *picture) {
-  return (GpuInputs){.textures = {[6] = &picture->sun_map.blurred, [7] = &picture->sun_map.solid},
-                     .frame = &picture->uniforms};
+  return (GpuInputs){
+      .textures = {[5] = &picture->sun_map.relief, [6] = &picture->sun_map.blurred, [7] = &picture->sun_map.solid},
+      .frame = &picture->uniforms};
 }
 
 // Output: colour and depth of every pixel.

@@ -100,6 +100,7 @@ static void write_sun(RenderFrameBlock *block, const RenderSettings *settings, c
   glm_vec3_cross(sun, u, v);
   block->sun_map[0] = fit_axis(block->sun_u, u, box);
   block->sun_map[1] = fit_axis(block->sun_v, v, box);
+  block->sun_map[2] = 1 - 1 / settings->refractive_index;
 }
 
 // ---- Everything ------------------------------------------------------------------------------------------------------
@@ -115,7 +116,7 @@ static void write_environment(RenderFrameBlock *block, const RenderPicture *pict
   set4(block->sky_horizon, settings->sky_horizon, 0);
   set4(block->floor_colour[0], settings->floor_colour[0], 0);
   set4(block->floor_colour[1], settings->floor_colour[1], 0);
-  const float plane[4] = {level, settings->tile_size, 8 * across, 0};
+  const float plane[4] = {level, settings->tile_size, 14 * across, 0};
   memcpy(block->floor_plane, plane, sizeof plane);
   const bool visible = settings->container_visible && picture->frame->has_container;
   set4(block->container_min, container->min, visible ? 1 : 0);

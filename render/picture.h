@@ -21,7 +21,7 @@ typedef struct RenderFrameBlock {
   float sun_direction[4];      // unit, towards the sun; 1 when there is a sun, else 0
   float sun_colour[4];         // irradiance
   float sun_u[4], sun_v[4];    // dot(p, xyz) + w is the place in the sun map, [0, 1]
-  float sun_map[4];            // metres across the map in u and v; –; –
+  float sun_map[4];            // metres across the map in u and v; 1 − 1/n; –
   float absorption[4];         // 1/m; reflectance at normal incidence F0
   float sky_zenith[4];         // of the gradient sky; –
   float sky_horizon[4];        // of the gradient sky; –
@@ -51,10 +51,11 @@ typedef struct RenderObstacles {
 
 /// The scene as the sun sees it, from infinitely far away.
 typedef struct RenderSunMap {
-  GpuProgram water_program, blur_program[2], solid_program;
+  GpuProgram water_program, blur_program[2], relief_program, solid_program;
   GpuTexture water;            // thickness (m), –, –, height of the water towards the sun (m): raw splats
   GpuTexture half_blurred;
-  GpuTexture blurred;          // the same, smoothed: thickness, height, coverage, light focused on what lies below
+  GpuTexture blurred;          // the same, smoothed: thickness, height, coverage
+  GpuTexture relief;           // from it: smooth normal of the water, focus of the light on what lies below
   GpuTexture solid;            // height of the nearest obstacle towards the sun (m)
   GpuTarget water_target, solid_target;
 } RenderSunMap;

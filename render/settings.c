@@ -21,7 +21,7 @@ RenderSettings render_default_settings(void) {
       .tile_size = 0.2f,
       .floor_colour = {{0.8f, 0.8f, 0.8f}, {0.2f, 0.2f, 0.2f}},
       .container_visible = true,
-      .absorption = {1.8f, 0.42f, 0.30f},
+      .absorption = {3.0f, 0.75f, 0.55f},
       .refractive_index = 1.333f,
       .tone_map = RENDER_TONE_FILMIC,
       .exposure = 1,

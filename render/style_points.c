@@ -61,15 +61,14 @@ static void points_destroy(void *state) {
 static bool shade(Points *points, RenderPicture *picture, RenderError *error) {
   const GpuProgramDesc desc = {.label = "points: shade", .file = "points.glsl", .defines = picture->defines};
   if (!gpu_program_prepare(&points->shade_program, &desc, error)) return false;
-  gpu_draw(picture->gpu,
-           &(GpuDraw){
-               .program = &points->shade_program,
-               .target = &picture->target,
-               .in = {.textures =
-                          {&points->surface, &points->tint, &points->thickness,
-                           &picture->background.colour, [6] = &picture->sun_map.blurred, [7] = &picture->sun_map.solid},
-                      .frame = &picture->uniforms},
-           });
+  gpu_draw(picture->gpu, &(GpuDraw){
+                             .program = &points->shade_program,
+                             .target = &picture->target,
+                             .in = {.textures = {&points->surface, &points->tint, &points->thickness,
+                                                 &picture->background.colour, [5] = &picture->sun_map.relief,
+                                                 [6] = &picture->sun_map.blurred, [7] = &picture->sun_map.solid},
+                                    .frame = &picture->uniforms},
+                         });
   return true;
 }
 

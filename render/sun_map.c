@@ -12,10 +12,12 @@ bool render_sun_map_create(RenderPicture *picture, RenderError *error) {
   const GpuTextureDesc water = {"sun map: water", WATER_SIZE, WATER_SIZE, GPU_RGBA32F, false};
   const GpuTextureDesc half_blurred = {"sun map: half blurred", WATER_SIZE, WATER_SIZE, GPU_RGBA32F, false};
   const GpuTextureDesc blurred = {"sun map: blurred", WATER_SIZE, WATER_SIZE, GPU_RGBA32F, true};
+  const GpuTextureDesc relief = {"sun map: relief", WATER_SIZE, WATER_SIZE, GPU_RGBA32F, true};
   const GpuTextureDesc solid = {"sun map: obstacles", SOLID_SIZE, SOLID_SIZE, GPU_R32F, false};
   return gpu_texture_create(&map->water, &water, error) &&
          gpu_texture_create(&map->half_blurred, &half_blurred, error) &&
-         gpu_texture_create(&map->blurred, &blurred, error) && gpu_texture_create(&map->solid, &solid, error) &&
+         gpu_texture_create(&map->blurred, &blurred, error) && gpu_texture_create(&map->relief, &relief, error) &&
+         gpu_texture_create(&map->solid, &solid, error) &&
          gpu_target_create(&map->water_target, &(GpuTargetDesc){.label = "sun map: water", .colour = {&map->water}},
                            error) &&
          gpu_target_create(&map->solid_target, &(GpuTargetDesc){.label = "sun map: obstacles", .colour = {&map->solid}},
@@ -27,10 +29,12 @@ void render_sun_map_destroy(RenderPicture *picture) {
   gpu_program_destroy(&map->water_program);
   gpu_program_destroy(&map->blur_program[0]);
   gpu_program_destroy(&map->blur_program[1]);
+  gpu_program_destroy(&map->relief_program);
   gpu_program_destroy(&map->solid_program);
   gpu_texture_destroy(&map->water);
   gpu_texture_destroy(&map->half_blurred);
   gpu_texture_destroy(&map->blurred);
+  gpu_texture_destroy(&map->relief);
   gpu_texture_destroy(&map->solid);
   gpu_target_destroy(&map->water_target);
   gpu_target_destroy(&map->solid_target);
@@ -38,16 +42,32 @@ void render_sun_map_destroy(RenderPicture *picture) {
 
 // ---- Water -----------------------------------------------------------------------------------------------------------
 
-static bool prepare_blur(RenderSunMap *map, RenderError *error) {
-  const GpuProgramDesc first = {.label = "sun blur along u", .file = "sun_blur.glsl", .compute = true};
-  const GpuProgramDesc second = {
+static bool prepare_smoothing(RenderSunMap *map, RenderError *error) {
+  const GpuProgramDesc along_u = {.label = "sun blur along u", .file = "sun_blur.glsl", .compute = true};
+  const GpuProgramDesc along_v = {
       .label = "sun blur along v", .file = "sun_blur.glsl", .defines = "#define SECOND 1\n", .compute = true};
-  return gpu_program_prepare(&map->blur_program[0], &first, error) &&
-         gpu_program_prepare(&map->blur_program[1], &second, error);
+  const GpuProgramDesc relief = {.label = "sun relief", .file = "sun_relief.glsl", .compute = true};
+  return gpu_program_prepare(&map->blur_program[0], &along_u, error) &&
+         gpu_program_prepare(&map->blur_program[1], &along_v, error) &&
+         gpu_program_prepare(&map->relief_program, &relief, error);
 }
 
-// Input: the raw map. Output: the smoothed one.
-static void blur(RenderPicture *picture) {
+// One compute pass over the map.
+static void filter(RenderPicture *picture, const GpuProgram *program, const GpuTexture *in, const GpuTexture *out,
+                   const float sigma[4]) {
+  gpu_dispatch(
+      picture->gpu,
+      &(GpuDispatch){
+          .program = program,
+          .output = out,
+          .width = WATER_SIZE,
+          .height = WATER_SIZE,
+          .in = {.textures = {in}, .frame = &picture->uniforms, .params = sigma, .params_size = 4 * sizeof(float)},
+      });
+}
+
+// Input: the raw map. Output: the smoothed one and its relief.
+static void smooth(RenderPicture *picture) {
   RenderSunMap *map = &picture->sun_map;
   // About one and a half particle spacings, and neither less than a texel nor more than the kernel is made for.
   float sigma[4] = {0};
@@ -55,18 +75,9 @@ static void blur(RenderPicture *picture) {
     const float texels = 3 * picture->frame->particle_radius * WATER_SIZE / picture->block.sun_map[i];
     sigma[i] = texels > 1 ? (texels < 12 ? texels : 12) : 1;
   }
-  const GpuTexture *const steps[3] = {&map->water, &map->half_blurred, &map->blurred};
-  for (int i = 0; i < 2; ++i) {
-    gpu_dispatch(
-        picture->gpu,
-        &(GpuDispatch){
-            .program = &map->blur_program[i],
-            .output = steps[i + 1],
-            .width = WATER_SIZE,
-            .height = WATER_SIZE,
-            .in = {.textures = {steps[i]}, .frame = &picture->uniforms, .params = sigma, .params_size = sizeof sigma},
-        });
-  }
+  filter(picture, &map->blur_program[0], &map->water, &map->half_blurred, sigma);
+  filter(picture, &map->blur_program[1], &map->half_blurred, &map->blurred, sigma);
+  filter(picture, &map->relief_program, &map->blurred, &map->relief, sigma);
 }
 
 // ---- Obstacles -------------------------------------------------------------------------------------------------------
@@ -94,11 +105,11 @@ bool render_sun_map_draw(RenderPicture *picture, RenderError *error) {
   if (!settings->sun || !settings->shadow) return true;
   if (picture->frame->obstacle_count > 0 && !draw_solids(picture, error)) return false;
   if (picture->particles.count == 0) return true;
-  if (!prepare_blur(&picture->sun_map, error)) return false;
+  if (!prepare_smoothing(&picture->sun_map, error)) return false;
   if (!render_splat_sun(picture, &picture->sun_map.water_program, settings->points.scale,
                         &picture->sun_map.water_target, error)) {
     return false;
   }
-  blur(picture);
+  smooth(picture);
   return true;
 }

@@ -44,7 +44,7 @@ void main() {
   bool at_b = v == 1 || v == 2 || v == 4;
   float side = v == 0 || v == 1 || v == 3 ? -1.0 : 1.0;
   vec4 p = at_b ? pb : pa;
-  float half_width = clamp(0.0011 * container_max.w / p.w / lens.y * 0.5 * lens.w, 0.7, 8.0);
+  float half_width = clamp(0.0016 * container_max.w / p.w / lens.y * 0.5 * lens.w, 0.7, 8.0);
   across = vec2(side * (half_width + 1.0), half_width);
   tone = edge < 4 ? 0.55 : 1.0;
   vec2 place = (at_b ? sb : sa) + across.x * vec2(-along.y, along.x) + (at_b ? along : -along) * 0.5 * half_width;
@@ -60,9 +60,11 @@ layout(location = 0) out vec4 result; // premultiplied
 
 void main() {
   float coverage = clamp(across.y + 0.5 - abs(across.x), 0.0, 1.0);
-  float rim = abs(across.x) / across.y; // a glass edge is brightest along its middle
-  vec3 light = sky_average(vec3(0.0, 1.0, 0.0)) * 1.3 + sun_colour.rgb * 0.12 * max(1.0 - rim * rim, 0.0);
-  float alpha = coverage * 0.8 * tone;
-  result = vec4(light * vec3(0.92, 1.0, 1.0) * alpha, alpha);
+  // Glass gathers light along its middle and is sea green at its rims.
+  float rim = min(abs(across.x) / across.y, 1.0);
+  vec3 bright = sky_average(vec3(0.0, 1.0, 0.0)) + sun_colour.rgb * 0.3;
+  vec3 light = mix(bright, vec3(0.10, 0.24, 0.24), rim * rim);
+  float alpha = coverage * 0.85 * tone;
+  result = vec4(light * alpha, alpha);
 }
 #endif

@@ -111,7 +111,8 @@ void main() {
   if (t.x > t.y || t.x < eye.w) discard; // missed, or the eye is inside
   vec3 p = eye.xyz + ray * t.x;
   float facing = max(dot(normal, sun_direction.xyz), 0.0);
-  vec3 light = sun_colour.rgb * facing / PI * sun_light(p) + sky_average(normal);
+  SunLight sunlit = sun_light(p);
+  vec3 light = sun_colour.rgb * facing / PI * sunlit.direct + sky_average(normal) * sunlit.diffuse;
   result = vec4(bodies[index].colour.rgb * light, t.x);
   gl_FragDepth = depth_of(t.x);
 }

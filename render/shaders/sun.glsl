@@ -1,23 +1,17 @@
 // How much sunlight reaches a point: shadows of obstacles, and what the water above it lets through.
 #ifdef WATER_SHADOW
-layout(binding = 6) uniform sampler2D sun_water; // thickness, height towards the sun, coverage, focus
+layout(binding = 5) uniform sampler2D sun_relief; // smooth normal of the water, focus of the light below it
+layout(binding = 6) uniform sampler2D sun_water;  // thickness, height towards the sun, coverage
 #endif
 #ifdef SOLID_SHADOW
-layout(binding = 7) uniform sampler2D sun_solid; // height of the nearest obstacle towards the sun
+layout(binding = 7) uniform sampler2D sun_solid;  // height of the nearest obstacle towards the sun
 #endif
+
+// Scattering coefficient of the water, 1/m; chosen for the look of a clear pool.
+const vec3 SCATTER = vec3(0.25, 0.50, 0.52);
 
 vec2 sun_place(vec3 p) {
   return vec2(dot(p, sun_u.xyz) + sun_u.w, dot(p, sun_v.xyz) + sun_v.w);
-}
-
-// Metres of water between the point and the sun.
-float sun_path(vec3 p) {
-#ifdef WATER_SHADOW
-  vec4 water = textureLod(sun_water, sun_place(p), 0.0);
-  return water.z > 0.0 ? clamp(water.y - dot(p, sun_direction.xyz), 0.0, water.x) : 0.0;
-#else
-  return 0.0;
-#endif
 }
 
 // Percentage-closer filtering over 4·4 texels, with the fractional place as weights so that edges are smooth.
@@ -43,15 +37,25 @@ float sun_past_solids(vec3 p) {
 #endif
 }
 
-// Sunlight that reaches a point in or below the water, as a share of what falls on top.
-vec3 sun_light(vec3 p) {
+struct SunLight {
+  vec3 direct;          // share of the sunlight that reaches the point
+  vec3 diffuse;         // the same of the sky's light
+  float path;           // metres of water between the point and the sun
+};
+
+// Light at a point in, below or beside the water. Besides absorbing, water scatters: its shadow is darker than its tint.
+SunLight sun_light(vec3 p) {
+  SunLight light = SunLight(vec3(1.0), vec3(1.0), 0.0);
 #ifdef WATER_SHADOW
   vec4 water = textureLod(sun_water, sun_place(p), 0.0);
-  float path = water.z > 0.0 ? clamp(water.y - dot(p, sun_direction.xyz), 0.0, water.x) : 0.0;
-  float below = water.z * smoothstep(0.0, 0.02 * container_max.w, path);
-  vec3 light = exp(-absorption.rgb * path) * mix(1.0, water.w, below);
-#else
-  vec3 light = vec3(1.0);
+  if (water.z > 0.0 && water.x > 0.0) {
+    light.path = clamp(water.y - dot(p, sun_direction.xyz), 0.0, water.x);
+    float deep = light.path / water.x;
+    float focus = textureLod(sun_relief, sun_place(p), 0.0).w;
+    light.direct = exp(-(absorption.rgb + SCATTER) * light.path) * mix(1.0, focus, deep);
+    light.diffuse = exp(-absorption.rgb * 0.7 * light.path);
+  }
 #endif
-  return light * sun_past_solids(p);
+  light.direct *= sun_past_solids(p);
+  return light;
 }

@@ -41,8 +41,8 @@ void main() {
   }
   sum /= weights;
 #ifdef SECOND
-  sum.y = sum.z > 1e-4 ? sum.y / sum.z : -FAR;
-  sum.w = 1.0;
+  sum.y = sum.z > 0.01 ? sum.y / sum.z : -FAR;
+  if (sum.z <= 0.01) sum.z = 0.0;
 #endif
   imageStore(result, at, sum);
 }

@@ -39,9 +39,10 @@ vec3 floor_light(vec3 p, float t) {
   float in_grout = grout.x + grout.y - grout.x * grout.y;
   float flat_out = clamp(1.5 - max(footprint.x, footprint.y) * 2.0, 0.0, 1.0);
   float shade = 1.0 + (hash(floor(at)) - 0.5) * 0.10 * flat_out;
-  vec3 albedo = mix(vec3(0.74, 0.73, 0.70) * shade, vec3(0.46, 0.45, 0.43), in_grout);
-  vec3 sun = sun_colour.rgb * max(sun_direction.y, 0.0) * sun_light(p) / PI;
-  vec3 light = albedo * (sun + sky_average(vec3(0.0, 1.0, 0.0)));
+  vec3 albedo = mix(vec3(0.64, 0.59, 0.51) * shade, vec3(0.36, 0.33, 0.29), in_grout);
+  SunLight sunlit = sun_light(p);
+  vec3 sun = sun_colour.rgb * max(sun_direction.y, 0.0) / PI * sunlit.direct;
+  vec3 light = albedo * (sun + sky_average(vec3(0.0, 1.0, 0.0)) * sunlit.diffuse);
   float reach = length(p.xz - eye.xz) / floor_plane.z;
   vec3 haze = sky(normalize(vec3(ray.x, 0.0, ray.z)));
   return mix(haze, light, exp(-reach * reach));
