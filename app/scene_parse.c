@@ -91,11 +91,23 @@ static bool read_text(const Value *value, char *member) {
   return true;
 }
 
+static int refuse_name(const Value *value, const SceneChoices *choices, const char *list, const char *name) {
+  const char *nearest = name ? text_nearest(name, choices->names, choices->count) : NULL;
+  char text[300], given[80];
+  snprintf(text, sizeof text, choices->count > 1 ? "one of %s" : "\"%s\"", list);
+  if (!nearest)
+    must_be(value, text);
+  else
+    scene_fail(value->source, value->path, "must be %s, got %s, did you mean \"%s\"?", text,
+               got(value->json, given, sizeof given), nearest);
+  return -1;
+}
+
 /// The place of the value among the names of its field; −1 and a message when it is none of them.
 static int read_name(const Value *value) {
   SceneChoices choices;
   scene_choices(value->field, &choices);
-  char list[256], text[300], given[80];
+  char list[256];
   scene_choices_list(&choices, list, sizeof list);
   const char *name = cJSON_IsString(value->json) ? value->json->valuestring : NULL;
   for (int i = 0; name && i < choices.with_later; i++) {
@@ -104,15 +116,7 @@ static int read_name(const Value *value) {
     scene_fail(value->source, value->path, "\"%s\" is not available in this version; available: %s", name, list);
     return -1;
   }
-  const char *nearest = name ? text_nearest(name, choices.names, choices.count) : NULL;
-  if (nearest) {
-    got(value->json, given, sizeof given);
-    scene_fail(value->source, value->path, "must be one of %s; got %s, did you mean \"%s\"?", list, given, nearest);
-  } else {
-    snprintf(text, sizeof text, choices.count > 1 ? "one of %s" : "\"%s\"", list);
-    must_be(value, text);
-  }
-  return -1;
+  return refuse_name(value, &choices, list, name);
 }
 
 static bool read_vector(const Value *value, float *member) {

@@ -27,8 +27,12 @@ static int peek(const Scan *scan) {
   return scan->at < scan->size ? (unsigned char)scan->text[scan->at] : -1;
 }
 
+static bool is_space(char c) {
+  return c == ' ' || c == '\t' || c == '\r' || c == '\n';
+}
+
 static void skip_space(Scan *scan) {
-  while (scan->at < scan->size && strchr(" \t\r\n", scan->text[scan->at]) && scan->text[scan->at]) scan->at++;
+  while (scan->at < scan->size && is_space(scan->text[scan->at])) scan->at++;
 }
 
 static bool wrong(Scan *scan, const char *cause) {
@@ -218,8 +222,11 @@ bool scene_check_syntax(const SceneSource *source) {
   skip_space(&scan);
   if (scan.at == scan.size) return app_fail(source->error, APP_BAD_INPUT, "%s: the file is empty", source->name);
   if (scan_text(&scan)) return true;
+  // Where the text ends too early, its last line is the last with something in it.
+  size_t at = scan.at;
+  while (scan.at == source->size && at > 0 && is_space(source->text[at - 1])) at--;
   return app_fail(source->error, APP_BAD_INPUT, "%s:%d: not valid JSON: %s", source->name,
-                  line_of(source->text, scan.at), scan.cause);
+                  line_of(source->text, at), scan.cause);
 }
 
 // ---- Lines -----------------------------------------------------------------------------------------------------------

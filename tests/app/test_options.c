@@ -1,0 +1,261 @@
+// The command line: what is understood, and what is refused with which message.
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/commands.h"
+#include "app/scene.h"
+
+enum { MOST_WORDS = 32 };
+
+/// Split at spaces (no quoting) and parse.
+static bool parse(Options *options, const char *line, AppError *error) {
+  static char copy[512];
+  static char *argv[MOST_WORDS];
+  int argc = 0;
+  strcpy(copy, line);
+  for (char *rest = copy, *word; (word = strtok_r(rest, " ", &rest));) argv[argc++] = word;
+  *error = (AppError){APP_OK, ""};
+  return options_parse(options, argc, argv, error);
+}
+
+static Options parsed(const char *line) {
+  Options options;
+  AppError error;
+  if (!parse(&options, line, &error)) fail_msg("%s: %s", line, error.message);
+  return options;
+}
+
+static void test_commands_and_sources(void **state) {
+  (void)state;
+  const struct { const char *line; int command; const char *source; } cases[] = {
+      {"lido", COMMAND_window, SCENE_DEFAULT},
+      {"lido still_pool", COMMAND_window, "still_pool"},
+      {"lido window", COMMAND_window, SCENE_DEFAULT},
+      {"lido window still_pool", COMMAND_window, "still_pool"},
+      {"lido --size 10x10 still_pool", COMMAND_window, "still_pool"},
+      {"lido render a.json -o x", COMMAND_render, "a.json"},
+      {"lido -o x render a.json", COMMAND_render, "a.json"},
+      {"lido --fps 30 render -ox a.json", COMMAND_render, "a.json"},
+      {"lido simulate a.json --output=x", COMMAND_simulate, "a.json"},
+      {"lido check a.json", COMMAND_check, "a.json"},
+      {"lido check --schema", COMMAND_check, NULL},
+      {"lido bench", COMMAND_bench, SCENE_DEFAULT},
+      {"lido bench --json a.json", COMMAND_bench, "a.json"},
+      {"lido list", COMMAND_list, NULL},
+      {"lido check -- --odd", COMMAND_check, "--odd"},
+      {"lido -- check -", COMMAND_check, "-"},
+  };
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    Options options = parsed(cases[i].line);
+    assert_int_equal(options.command, cases[i].command);
+    if (cases[i].source)
+      assert_string_equal(options.source, cases[i].source);
+    else
+      assert_null(options.source);
+    options_free(&options);
+  }
+}
+
+static void test_defaults(void **state) {
+  (void)state;
+  Options o = parsed("lido");
+  assert_int_equal(o.width, 1280);
+  assert_int_equal(o.height, 720);
+  assert_int_equal(o.first_frame, 0);
+  assert_int_equal(o.last_frame, -1);
+  assert_true(o.fps == 60);
+  assert_int_equal(o.context, CONTEXT_AUTO);
+  assert_true(o.threads == 0 && !o.has_seed && !o.has_camera && o.set_count == 0);
+  assert_true(!o.quiet && !o.json && !o.help && !o.version && !o.style && !o.output && !o.stats && !o.layer);
+  options_free(&o);
+}
+
+static void test_values(void **state) {
+  (void)state;
+  Options o = parsed("lido render s --output a.png --style points --size=64x48 --frames 10:20 --fps 24.5 --context osmesa "
+                     "--threads 3 --quiet");
+  assert_string_equal(o.output, "a.png");
+  assert_string_equal(o.style, "points");
+  assert_true(o.width == 64 && o.height == 48 && o.first_frame == 10 && o.last_frame == 19);
+  assert_true(o.fps == 24.5 && o.context == CONTEXT_OSMESA && o.threads == 3 && o.quiet);
+  options_free(&o);
+
+  o = parsed("lido render s -o - --camera -1,2.5,3,0,-0.5,1e1 --layer depth --stats s.jsonl --seed 7 --set a.b=1=2");
+  const float camera[6] = {-1, 2.5f, 3, 0, -0.5f, 10};
+  assert_string_equal(o.output, "-");
+  assert_true(o.has_camera);
+  assert_memory_equal(o.camera, camera, sizeof camera);
+  assert_string_equal(o.layer, "depth");
+  assert_string_equal(o.stats, "s.jsonl");
+  assert_true(o.has_seed && o.seed == 7);
+  assert_int_equal(o.set_count, 2);
+  assert_string_equal(o.sets[0], "a.b=1=2");
+  assert_string_equal(o.sets[1], "simulation.seed=7");
+  options_free(&o);
+}
+
+static void test_style_and_seed_win_over_set(void **state) {
+  (void)state;
+  Options o = parsed("lido --style points --seed 3 --set render.style=x --set simulation.seed=1");
+  assert_int_equal(o.set_count, 4);
+  assert_string_equal(o.sets[2], "render.style=points");
+  assert_string_equal(o.sets[3], "simulation.seed=3");
+  options_free(&o);
+}
+
+static void test_frames(void **state) {
+  (void)state;
+  const struct { const char *line; int first, last; } cases[] = {
+      {"lido --frames 1", 0, 0},     {"lido --frames 60", 0, 59}, {"lido --frames 5:6", 5, 5},
+      {"lido --frames :4", 0, 3},    {"lido --frames 7:", 7, -1}, {"lido --frames 0:10000000", 0, 9999999},
+  };
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    Options o = parsed(cases[i].line);
+    assert_int_equal(o.first_frame, cases[i].first);
+    assert_int_equal(o.last_frame, cases[i].last);
+    options_free(&o);
+  }
+}
+
+static void test_help_and_version_need_nothing_else(void **state) {
+  (void)state;
+  const char *const lines[] = {"lido --help", "lido render --help", "lido -h render", "lido simulate -h", "lido --version",
+                               "lido check --version"};
+  for (size_t i = 0; i < sizeof lines / sizeof *lines; i++) {
+    Options o = parsed(lines[i]);
+    assert_true(o.help || o.version);
+    options_free(&o);
+  }
+}
+
+static void test_refusals(void **state) {
+  (void)state;
+  const struct { const char *line, *message; } cases[] = {
+      {"lido --styl points", "--styl: unknown option, did you mean --style?"},
+      {"lido --xyzzy", "--xyzzy: unknown option (see lido --help)"},
+      {"lido -x", "-x: unknown option (see lido --help)"},
+      {"lido rendr a.json -o x", "rendr: unknown command, did you mean \"render\"?"},
+      {"lido lsit", "lsit: unknown command, did you mean \"list\"?"},
+      {"lido qqqqqq a.json", "qqqqqq: unknown command (see lido --help)"},
+      {"lido check a b", "b: one argument too many"},
+      {"lido list a", "a: one argument too many"},
+      {"lido check --schema a", "a: one argument too many"},
+      {"lido check", "lido check: which scene? Usage: lido check SCENE"},
+      {"lido render -o x", "lido render: which scene? Usage: lido render SOURCE -o PATTERN"},
+      {"lido render a.json", "lido render: needs -o PATTERN, like -o out/f_%05d.png"},
+      {"lido simulate a.json", "lido simulate: needs -o PATTERN, like -o out/p_%05d.vtk"},
+      {"lido simulate a.json -o", "--output: needs a value: PATTERN"},
+      {"lido simulate a.json --output=", "--output: must not be empty, got \"\""},
+      {"lido --quiet=1", "--quiet: takes no value, got \"1\""},
+      {"lido -qx", "--quiet: takes no value, got \"x\""},
+      {"lido list --size 10x10", "--size: lido list has no use for it"},
+      {"lido -o x", "--output: lido window has no use for it"},
+      {"lido --json", "--json: lido window has no use for it"},
+      {"lido --style cartoon", "--style: \"cartoon\" is not available in this version; available: points"},
+      {"lido --style blue", "--style: must be one of points, got \"blue\""},
+      {"lido --size 10", "--size: must be WIDTHxHEIGHT, each from 1 to 16384 pixels, like 1280x720, got \"10\""},
+      {"lido --threads 0", "--threads: must be a whole number in [1, 256], got \"0\""},
+      {"lido --fps nan", "--fps: must be a number in [1, 10000], got \"nan\""},
+      {"lido --seed -1", "--seed: must be a whole number in [0, 9007199254740991], got \"-1\""},
+      {"lido --context vulkan", "--context: must be one of auto, glfw, egl, osmesa, got \"vulkan\""},
+      {"lido --set simulation", "--set: must have the form key.path=value, got \"simulation\""},
+  };
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    Options options;
+    AppError error;
+    bool good = parse(&options, cases[i].line, &error);
+    options_free(&options);
+    if (good) fail_msg("accepted: %s", cases[i].line);
+    assert_string_equal(error.message, cases[i].message);
+    assert_int_equal(error.code, APP_BAD_INPUT);
+  }
+}
+
+static void test_values_out_of_range(void **state) {
+  (void)state;
+  const char *const lines[] = {
+      "lido --size 0x5",       "lido --size 5x0",      "lido --size 16385x5", "lido --size 5x5x5",  "lido --size -5x5",
+      "lido --size x5",        "lido --size 5x",       "lido --frames 0",     "lido --frames -1",   "lido --frames :",
+      "lido --frames 5:5",     "lido --frames 5:4",    "lido --frames a",     "lido --frames 1:b",  "lido --frames 1:2:3",
+      "lido --frames 99999999999999999999",            "lido --fps 0",        "lido --fps -1",      "lido --fps 1e9",
+      "lido --fps inf",        "lido --fps 5x",        "lido --threads 257",  "lido --threads 1.5", "lido --threads two",
+      "lido --seed 1e3",       "lido --seed 99999999999999999999",            "lido --seed 9007199254740992",
+      "lido --camera 1,2,3",   "lido --camera 1,2,3,4,5", "lido --camera 1,2,3,4,5,6,7", "lido --camera 1,2,3,4,5,x",
+      "lido --camera 1,2,3,1,2,3", "lido --camera 1,2,3,4,5,nan", "lido --camera 1,2,3,4,5,1e30", "lido --camera ,,,,,",
+  };
+  for (size_t i = 0; i < sizeof lines / sizeof *lines; i++) {
+    Options options;
+    AppError error;
+    bool good = parse(&options, lines[i], &error);
+    options_free(&options);
+    if (good) fail_msg("accepted: %s", lines[i]);
+    assert_int_equal(error.code, APP_BAD_INPUT);
+  }
+}
+
+static void test_no_argument_at_all(void **state) {
+  (void)state;
+  Options options;
+  AppError error;
+  char *none[] = {NULL};
+  assert_true(options_parse(&options, 0, none, &error));
+  assert_int_equal(options.command, COMMAND_window);
+  options_free(&options);
+}
+
+static void test_control_characters_are_not_echoed(void **state) {
+  (void)state;
+  Options options;
+  AppError error;
+  assert_false(parse(&options, "lido --a\x1b[2J\nb", &error));
+  options_free(&options);
+  for (const char *c = error.message; *c; c++) assert_true(*c >= ' ');
+}
+
+static void test_help_names_every_command_and_option(void **state) {
+  (void)state;
+  const char *const options[] = {"output", "style", "size", "frames", "fps", "context", "threads", "seed", "set", "camera",
+                                 "layer", "stats", "json", "schema", "reference", "quiet", "help", "version"};
+  char *text = NULL;
+  size_t size;
+  FILE *file = open_memstream(&text, &size);
+  assert_non_null(file);
+  options_print_help(file, -1);
+  for (int i = 0; i < COMMAND_COUNT; i++) options_print_help(file, i);
+  fclose(file);
+  for (size_t i = 0; i < sizeof options / sizeof *options; i++) {
+    char name[32];
+    snprintf(name, sizeof name, "--%s", options[i]);
+    if (!strstr(text, name)) fail_msg("the help does not name %s", name);
+  }
+#define NAMED(name, arguments, summary) assert_non_null(strstr(text, summary));
+  COMMANDS(NAMED)
+#undef NAMED
+  // It fits a terminal.
+  for (const char *line = text, *end; (end = strchr(line, '\n')); line = end + 1) assert_true(end - line <= 100);
+  free(text);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_commands_and_sources),
+      cmocka_unit_test(test_defaults),
+      cmocka_unit_test(test_values),
+      cmocka_unit_test(test_style_and_seed_win_over_set),
+      cmocka_unit_test(test_frames),
+      cmocka_unit_test(test_help_and_version_need_nothing_else),
+      cmocka_unit_test(test_refusals),
+      cmocka_unit_test(test_values_out_of_range),
+      cmocka_unit_test(test_no_argument_at_all),
+      cmocka_unit_test(test_control_characters_are_not_echoed),
+      cmocka_unit_test(test_help_names_every_command_and_option),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

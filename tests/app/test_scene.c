@@ -1,0 +1,301 @@
+// Scenes: values of every type, defaults, and every kind of message with its line.
+#include "scene_helpers.h"
+
+#include <math.h>
+
+static const char *const whole = //
+    "{\n"
+    "  \"version\": 1, \"name\": \"A \\u00e9 \\\"quoted\\\" name\",\n"
+    "  \"simulation\": {\"solver\": \"pbf\", \"particle_radius\": 0.02, \"gravity\": [1, -9, 0.5], \"iterations\": 7,\n"
+    "    \"duration\": 2.5, \"seed\": 9007199254740991, \"jitter\": 0.25},\n"
+    "  \"container\": {\"min\": [-1, 0, -1], \"max\": [1, 2, 1], \"visible\": false},\n"
+    "  \"fluid\": [{\"min\": [-1, 0, -1], \"max\": [0, 1, 1], \"velocity\": [1, 2, 3], \"colour\": [0.1, 0.2, 0.3]},\n"
+    "    {\"type\": \"block\", \"min\": [0, 0, -1], \"max\": [0.5, 1, 1]}],\n"
+    "  \"obstacles\": [\n"
+    "    {\"type\": \"box\", \"size\": [0.1, 0.2, 0.3], \"position\": [0.7, 0.1, 0], \"rotation\": [0, 90, 0]},\n"
+    "    {\"type\": \"sphere\", \"radius\": 0.1, \"position\": [0.8, 1, 0]},\n"
+    "    {\"type\": \"cylinder\", \"radius\": 0.1, \"height\": 0.5, \"position\": [0.8, 1, 0.5], \"motion\": \"static\"}],\n"
+    "  \"camera\": {\"eye\": [0, 1, 4], \"target\": [0, 0.5, 0], \"fov\": 40},\n"
+    "  \"light\": {\"direction\": [0, 2, 0], \"sun\": false},\n"
+    "  \"environment\": {\"sky\": \"gradient\", \"floor\": \"checker\", \"floor_level\": -0.5, \"checker_odd\": [0, 0, 1]},\n"
+    "  \"render\": {\"style\": \"points\", \"tone_map\": \"none\", \"points\": {\"scale\": 1}},\n"
+    "  \"events\": [\n"
+    "    {\"type\": \"camera\", \"time\": 3, \"eye\": [1, 1, 4], \"target\": [0, 0, 0]},\n"
+    "    {\"type\": \"push\", \"time\": 1, \"origin\": [0, 0, 5], \"direction\": [0, 0, -4], \"acceleration\": [0, 0, -9]},\n"
+    "    {\"type\": \"pour\", \"time\": 1, \"min\": [0, 1, 0], \"max\": [0.2, 1.2, 0.2]},\n"
+    "    {\"type\": \"tilt\", \"time\": 0.5, \"duration\": 1, \"gravity\": [3, -9, 0]},\n"
+    "    {\"type\": \"style\", \"time\": 2, \"name\": \"points\"}]\n"
+    "}\n";
+
+static void test_every_type_of_value_arrives(void **state) {
+  (void)state;
+  Scene scene = load(whole);
+  assert_string_equal(scene.name, "A \xc3\xa9 \"quoted\" name");
+  assert_int_equal(scene.simulation.solver, SIM_SOLVER_PBF);
+  assert_true(scene.simulation.particle_radius == 0.02f);
+  assert_true(scene.simulation.gravity[0] == 1 && scene.simulation.gravity[2] == 0.5f);
+  assert_int_equal(scene.simulation.iterations, 7);
+  assert_true(scene.simulation.duration == 2.5);
+  assert_true(scene.simulation.seed == UINT64_C(9007199254740991));
+  assert_false(scene.container.visible);
+  assert_int_equal(scene.fluid_count, 2);
+  assert_true(scene.fluid[0].block.velocity[2] == 3 && scene.fluid[0].block.colour[1] == 0.2f);
+  assert_int_equal(scene.environment.sky, RENDER_SKY_GRADIENT);
+  assert_int_equal(scene.environment.floor, RENDER_FLOOR_CHECKER);
+  assert_true(scene.environment.floor_level == -0.5f);
+  assert_int_equal(scene.render.tone_map, RENDER_TONE_NONE);
+  assert_string_equal(scene.render.style, "points");
+  scene_free(&scene);
+}
+
+static void test_events_are_sorted_and_completed(void **state) {
+  (void)state;
+  Scene scene = load(whole);
+  const SceneEventType order[] = {EVENT_TILT, EVENT_PUSH, EVENT_POUR, EVENT_STYLE, EVENT_CAMERA};
+  assert_int_equal(scene.events_count, 5);
+  for (int i = 0; i < 5; i++) assert_int_equal(scene.events[i].type, order[i]);
+  assert_true(scene.events[0].time == 0.5 && scene.events[0].duration == 1);
+  assert_true(scene.events[0].tilt.gravity[0] == 3);
+  // Directions become unit vectors, a camera without a lens keeps the scene's.
+  assert_true(scene.events[1].push.direction[2] == -1);
+  assert_true(scene.events[1].push.radius == 0.2f);
+  assert_true(scene.events[2].pour.max[1] == 1.2f);
+  assert_string_equal(scene.events[3].style.name, "points");
+  assert_true(scene.events[4].camera.fov == 40);
+  scene_free(&scene);
+}
+
+static void test_world_def_holds_the_scene(void **state) {
+  (void)state;
+  Scene scene = load(whole);
+  SimWorldDef def = scene_world_def(&scene);
+  assert_int_equal(def.cookie, sim_default_world_def().cookie);
+  assert_int_equal(def.block_count, 2);
+  assert_true(def.blocks[0].velocity[0] == 1 && def.blocks[1].max[0] == 0.5f);
+  assert_int_equal(def.obstacle_count, 3);
+  assert_int_equal(def.obstacles[0].shape, SIM_BOX);
+  assert_true(def.obstacles[0].size[2] == 0.3f);
+  // A quarter turn about y: sin 45° on y and w, nothing else.
+  assert_float_equal(def.obstacles[0].rotation[1], 0.70710678f, 1e-6);
+  assert_float_equal(def.obstacles[0].rotation[3], 0.70710678f, 1e-6);
+  assert_true(def.obstacles[0].rotation[0] == 0 && def.obstacles[0].rotation[2] == 0);
+  assert_int_equal(def.obstacles[1].shape, SIM_SPHERE);
+  assert_true(def.obstacles[1].size[0] == 0.2f);
+  assert_int_equal(def.obstacles[2].shape, SIM_CYLINDER);
+  assert_true(def.obstacles[2].size[0] == 0.2f && def.obstacles[2].size[1] == 0.5f);
+  assert_true(def.seed == scene.simulation.seed && def.jitter == 0.25f && def.container.min[0] == -1);
+  assert_true(scene_particle_count(&scene) == 25 * 25 * 50 + 12 * 25 * 50);
+  scene_free(&scene);
+}
+
+static void test_render_settings_and_view_hold_the_scene(void **state) {
+  (void)state;
+  Scene scene = load(whole);
+  RenderSettings settings = scene_render_settings(&scene);
+  RenderView view = scene_view(&scene);
+  assert_int_equal(settings.cookie, render_default_settings().cookie);
+  assert_string_equal(settings.style, "points");
+  assert_true(!settings.sun && settings.shadow && !settings.container_visible);
+  assert_true(settings.floor_level == -0.5f && settings.floor_colour[1][2] == 1);
+  assert_int_equal(settings.tone_map, RENDER_TONE_NONE);
+  assert_true(settings.points.scale == 1 && settings.sun_direction[1] == 2);
+  assert_true(view.eye[2] == 4 && view.target[1] == 0.5f && view.vertical_fov == 40);
+  scene_free(&scene);
+}
+
+// ---- Defaults --------------------------------------------------------------------------------------------------------
+
+static void test_defaults_are_those_of_the_libraries(void **state) {
+  (void)state;
+  Scene scene = load("{\"version\": 1}");
+  SimWorldDef is = scene_world_def(&scene), should = sim_default_world_def();
+  // What the scene adds is put aside; padding was zeroed in neither.
+  assert_int_equal(is.block_count, 0);
+  assert_int_equal(is.obstacle_count, 0);
+  assert_true(is.solver == should.solver && is.particle_radius == should.particle_radius);
+  assert_true(is.rest_density == should.rest_density && is.support == should.support);
+  assert_memory_equal(is.gravity, should.gravity, sizeof is.gravity);
+  assert_true(is.time_step == should.time_step && is.cfl == should.cfl && is.iterations == should.iterations);
+  assert_true(is.viscosity == should.viscosity && is.relaxation == should.relaxation && is.tensile == should.tensile);
+  assert_memory_equal(&is.container, &should.container, sizeof is.container);
+  assert_true(is.seed == should.seed && is.jitter == should.jitter && is.threads == should.threads);
+
+  RenderSettings look = scene_render_settings(&scene), best = render_default_settings();
+  assert_string_equal(look.style, best.style);
+  assert_memory_equal(look.sun_direction, best.sun_direction, sizeof look.sun_direction);
+  assert_memory_equal(look.sun_colour, best.sun_colour, sizeof look.sun_colour);
+  assert_true(look.sun == best.sun && look.shadow == best.shadow && look.sky == best.sky && look.floor == best.floor);
+  assert_memory_equal(look.sky_zenith, best.sky_zenith, sizeof look.sky_zenith);
+  assert_memory_equal(look.sky_horizon, best.sky_horizon, sizeof look.sky_horizon);
+  assert_true(isnan(look.floor_level) && isnan(best.floor_level));
+  assert_true(look.tile_size == best.tile_size && look.container_visible == best.container_visible);
+  assert_memory_equal(look.floor_colour, best.floor_colour, sizeof look.floor_colour);
+  assert_memory_equal(look.absorption, best.absorption, sizeof look.absorption);
+  assert_true(look.refractive_index == best.refractive_index && look.exposure == best.exposure);
+  assert_true(look.tone_map == best.tone_map && look.points.scale == best.points.scale);
+  scene_free(&scene);
+}
+
+static void test_names_in_the_table_stand_for_the_right_values(void **state) {
+  (void)state;
+  const struct { const char *object, *key, *name; int value; } rows[] = {
+      {"simulation", "solver", "pbf", SIM_SOLVER_PBF},     {"obstacles", "type", "box", SIM_BOX},
+      {"obstacles", "type", "sphere", SIM_SPHERE},         {"obstacles", "type", "cylinder", SIM_CYLINDER},
+      {"environment", "sky", "clear", RENDER_SKY_CLEAR},   {"environment", "sky", "gradient", RENDER_SKY_GRADIENT},
+      {"environment", "floor", "tiles", RENDER_FLOOR_TILES}, {"environment", "floor", "checker", RENDER_FLOOR_CHECKER},
+      {"environment", "floor", "none", RENDER_FLOOR_NONE}, {"render", "tone_map", "none", RENDER_TONE_NONE},
+      {"render", "tone_map", "filmic", RENDER_TONE_FILMIC}, {"events", "type", "push", EVENT_PUSH},
+      {"events", "type", "pour", EVENT_POUR},              {"events", "type", "tilt", EVENT_TILT},
+      {"events", "type", "style", EVENT_STYLE},            {"events", "type", "camera", EVENT_CAMERA}};
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    const SceneField *object = scene_field_find(&scene_top, rows[i].object);
+    SceneChoices choices;
+    scene_choices(scene_field_find(object->object, rows[i].key), &choices);
+    assert_in_range(rows[i].value, 0, choices.count - 1);
+    assert_string_equal(choices.names[rows[i].value], rows[i].name);
+  }
+}
+
+/// Every row: a default that is in its own range, a doc that is one sentence, a range that can be read.
+static void check_rows(const SceneObject *object) {
+  for (int i = 0; i < object->field_count; i++) {
+    const SceneField *field = &object->fields[i];
+    size_t length = strlen(field->doc);
+    assert_true(length > 5 && field->doc[length - 1] == '.');
+    if (field->type == SCENE_OBJECT || field->type == SCENE_LIST || field->type == SCENE_VARIANT) {
+      check_rows(field->object);
+    } else if (*field->range == '[' || *field->range == '(') {
+      SceneInterval interval = scene_interval(field);
+      assert_true(interval.low <= interval.high);
+      size_t end = strlen(field->range) - 1;
+      assert_true(strchr(field->range, ',') && (field->range[end] == ']' || field->range[end] == ')'));
+      double number = field->fallback ? strtod(field->fallback + strspn(field->fallback, "["), NULL) : interval.high;
+      assert_true(!field->fallback || !strcmp(field->fallback, "null") || scene_interval_has(&interval, number));
+    }
+  }
+}
+
+static void test_rows_of_the_table_make_sense(void **state) {
+  (void)state;
+  check_rows(&scene_top);
+}
+
+static void test_camera_is_found_when_none_is_given(void **state) {
+  (void)state;
+  Scene scene = load("{\"version\": 1, \"container\": {\"min\": [10, 0, 0], \"max\": [11, 1, 2]}}");
+  RenderView view = scene_view(&scene);
+  // In front of it, above it, looking at it.
+  assert_true(view.eye[2] > 2 && view.eye[1] > 0.5f && view.eye[0] > 9 && view.eye[0] < 12);
+  assert_true(view.target[0] == 10.5f && view.target[1] > 0 && view.target[1] < 1 && view.target[2] == 1);
+  scene_free(&scene);
+}
+
+// ---- Messages --------------------------------------------------------------------------------------------------------
+
+static void test_messages_name_line_path_and_cause(void **state) {
+  (void)state;
+  refused("{\n \"version\": 1,\n \"simulation\": {\n  \"particle_radius\": -1}}",
+          "t.json:4: simulation.particle_radius: must be in [0.0001, 1] m, got -1");
+  refused("{\"version\": 1,\n\"simulation\": {\"iterations\":\n 2.5}}",
+          "t.json:2: simulation.iterations: must be a whole number in [1, 100], got 2.5");
+  refused("{\"version\": 1, \"simulation\": {\"viscosity\": \"a\\u0007b\"}}",
+          "t.json:1: simulation.viscosity: must be a number in [0, 0.5], got \"a?b\"");
+  refused("{\"version\": 1,\n \"simulation\": {\"gravity\": [0,\n 1e999, 0]}}",
+          "t.json:3: simulation.gravity.1: must be in [-1000, 1000] m/s\xc2\xb2, got inf");
+  refused("{\"version\": 1, \"light\": {\"sun\": 1}}", "t.json:1: light.sun: must be true or false, got 1");
+  refused("{\"version\": 1, \"light\": {\"direction\": [0, 0, 0]}}",
+          "t.json:1: light.direction: must not be the zero vector");
+  refused("{\"version\": 1, \"name\": [1]}", "t.json:1: name: must be a string, got a list");
+  refused("{\"version\": 1,\n\"fluid\": [{\"min\": [0,0,0], \"max\": [1,1,1]},\n\n{\"max\": [1, 1, 1]}]}",
+          "t.json:4: fluid.1.min: is missing");
+  refused("{\"version\": 1,\n\"fluid\": [[]]}", "t.json:2: fluid.0: must be an object, got a list");
+  refused("{\"version\": 1, \"render\": {\"tone_map\": \"filmik\"}}",
+          "t.json:1: render.tone_map: must be one of none, filmic, got \"filmik\", did you mean \"filmic\"?");
+  refused("[]", "t.json:1: must be an object, got a list");
+  refused("{}", "t.json:1: version: is missing");
+}
+
+static void test_keys_are_known_and_stand_once(void **state) {
+  (void)state;
+  refused("{\"version\": 1,\n \"simulation\": {\n  \"particle_raduis\": 1}}",
+          "t.json:3: simulation.particle_raduis: unknown key, did you mean \"particle_radius\"?");
+  refused("{\"version\": 1, \"zzz\": 1}", "t.json:1: zzz: unknown key");
+  refused("{\"version\": 1,\n\"name\": \"a\",\n\"name\": \"b\"}", "t.json:3: name: stands here twice");
+  refused("{\"version\": 1, \"fluid\": [{\"min\": [0,0,0], \"max\": [1,1,1],\n\"n\\u0061me\\n\": 3}]}",
+          "t.json:2: fluid.0.name?: unknown key");
+  // A key of another kind of item is unknown here.
+  refused("{\"version\": 1, \"obstacles\": [{\"type\": \"sphere\", \"radius\": 1, \"position\": [0,0,0], \"height\": 1}]}",
+          "t.json:1: obstacles.0.height: unknown key");
+  // The version comes first: what follows may be of a later one.
+  refused("{\"zzz\": 1,\n\"version\": 2}", "t.json:2: version: must be 1, got 2");
+}
+
+static void test_what_comes_later_is_refused_by_name(void **state) {
+  (void)state;
+  refused("{\"version\": 1, \"simulation\": {\"solver\": \"sph\"}}",
+          "t.json:1: simulation.solver: \"sph\" is not available in this version; available: pbf");
+  refused("{\"version\": 1, \"simulation\": {\"vorticity\": 1}}",
+          "t.json:1: simulation.vorticity: is not available in this version");
+  refused("{\"version\": 1, \"fluid\": [{\"type\": \"emitter\"}]}",
+          "t.json:1: fluid.0.type: \"emitter\" is not available in this version; available: block");
+  refused("{\"version\": 1, \"obstacles\": [{\"type\": \"mesh\"}]}",
+          "t.json:1: obstacles.0.type: \"mesh\" is not available in this version; available: box, sphere, cylinder");
+}
+
+static void test_boxes_must_make_sense(void **state) {
+  (void)state;
+  refused("{\"version\": 1, \"container\": {\"min\": [0, 2, 0]}}",
+          "t.json:1: container: min must be less than max, but in y 2 is not less than 1.6");
+  refused("{\"version\": 1,\n\"fluid\": [\n{\"min\": [0, 0, 0], \"max\": [1, 0, 1]}]}",
+          "t.json:3: fluid.0: min must be less than max, but in y 0 is not less than 0");
+  refused("{\"version\": 1, \"fluid\": [{\"min\": [4, 0, 0], \"max\": [5, 1, 1]}]}",
+          "t.json:1: fluid.0: lies outside the container");
+  refused("{\"version\": 1, \"fluid\": [{\"min\": [0,0,0], \"max\": [1,1,1]},\n{\"min\": [0.9,0,0], \"max\": [2,1,1]}]}",
+          "t.json:2: fluid.1: overlaps fluid.0");
+  refused("{\"version\": 1, \"simulation\": {\"particle_radius\": 0.001}, \"fluid\": [{\"min\": [0,0,0], \"max\": [1,1,1]}]}",
+          "t.json:1: fluid.0: would hold 125000000 particles of radius 0.001 m, more than the limit of 16777216");
+  refused("{\"version\": 1, \"camera\": {\"eye\": [1, 1, 1], \"target\": [1, 1, 1]}}",
+          "t.json:1: camera: eye and target must not be the same point");
+}
+
+static void test_syntax_errors_name_line_and_cause(void **state) {
+  (void)state;
+  refused("", "t.json: the file is empty");
+  refused("\xef\xbb\xbf \n", "t.json: the file is empty");
+  refused("{\"version\": 1,}", "t.json:1: not valid JSON: expected a key in \"\", got '}'");
+  refused("{\"version\": 1\n\"name\": 2}", "t.json:2: not valid JSON: expected ',' or '}', got '\"'");
+  refused("\n\n{\"version\": 1", "t.json:3: not valid JSON: the text ends inside an object that begins in line 3");
+  refused("{\"version\": 1} x", "t.json:1: not valid JSON: expected the end of the text, got 'x'");
+  refused("{\"version\": 01}", "t.json:1: not valid JSON: a number with a leading zero");
+  refused("{\"name\": \"\\ud800\"}", "t.json:1: not valid JSON: an invalid \\u escape in a string");
+  refused("{\"name\": \"\xff\"}", "t.json:1: not valid JSON: a string that is not UTF-8");
+  refused("// a scene\n{}", "t.json:1: not valid JSON: expected a value (a number, a string in \"\", true, false, null, "
+                            "[ or {), got '/' (JSON has no comments)");
+}
+
+static void test_byte_order_mark_is_accepted(void **state) {
+  (void)state;
+  Scene scene = load("\xef\xbb\xbf{\"version\": 1, \"name\": \"b\"}");
+  assert_string_equal(scene.name, "b");
+  scene_free(&scene);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_every_type_of_value_arrives),
+      cmocka_unit_test(test_events_are_sorted_and_completed),
+      cmocka_unit_test(test_world_def_holds_the_scene),
+      cmocka_unit_test(test_render_settings_and_view_hold_the_scene),
+      cmocka_unit_test(test_defaults_are_those_of_the_libraries),
+      cmocka_unit_test(test_names_in_the_table_stand_for_the_right_values),
+      cmocka_unit_test(test_rows_of_the_table_make_sense),
+      cmocka_unit_test(test_camera_is_found_when_none_is_given),
+      cmocka_unit_test(test_messages_name_line_path_and_cause),
+      cmocka_unit_test(test_keys_are_known_and_stand_once),
+      cmocka_unit_test(test_what_comes_later_is_refused_by_name),
+      cmocka_unit_test(test_boxes_must_make_sense),
+      cmocka_unit_test(test_syntax_errors_name_line_and_cause),
+      cmocka_unit_test(test_byte_order_mark_is_accepted),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,105 @@
+#!/usr/bin/env python3
+"""The JSON schema agrees with the parser: shipped scenes and what `lido check` prints are valid; what the parser
+refuses for its type, range or key, the schema refuses too.
+
+usage: test_schema.py LIDO SOURCE_FOLDER
+"""
+
+import copy
+import json
+import pathlib
+import subprocess
+import sys
+
+try:
+    import jsonschema
+except ImportError:
+    print("python3-jsonschema is not installed")
+    sys.exit(77)
+
+LIDO, SOURCES = sys.argv[1], pathlib.Path(sys.argv[2])
+
+FULL = {
+    "version": 1,
+    "name": "everything",
+    "simulation": {"solver": "pbf", "particle_radius": 0.02, "gravity": [0, -9.81, 0], "iterations": 5, "seed": 3},
+    "container": {"shape": "box", "min": [0, 0, 0], "max": [2, 1, 1], "visible": False},
+    "fluid": [{"type": "block", "min": [0, 0, 0], "max": [1, 1, 1], "velocity": [1, 0, 0], "colour": [0, 0, 1]}],
+    "obstacles": [
+        {"type": "box", "size": [0.1, 0.1, 0.1], "position": [1.5, 0, 0], "rotation": [0, 45, 0]},
+        {"type": "sphere", "radius": 0.1, "position": [1.5, 0.5, 0.5]},
+        {"type": "cylinder", "radius": 0.1, "height": 1, "position": [1.8, 0.5, 0.5], "motion": "static"},
+    ],
+    "camera": {"eye": [0, 1, 3], "target": None, "fov": 50},
+    "light": {"direction": [0, 1, 0], "sun": True},
+    "environment": {"sky": "gradient", "floor": "checker", "floor_level": None},
+    "render": {"style": "points", "tone_map": "none", "points": {"scale": 1}},
+    "events": [
+        {"type": "push", "origin": [0, 0, 0], "direction": [1, 0, 0], "acceleration": [5, 0, 0], "duration": 1},
+        {"type": "pour", "time": 1, "min": [0, 0, 0], "max": [0.2, 0.2, 0.2]},
+        {"type": "tilt", "time": 1, "gravity": [1, -9, 0]},
+        {"type": "style", "time": 2, "name": "points"},
+        {"type": "camera", "time": 3, "eye": [1, 1, 1], "target": [0, 0, 0], "fov": 40},
+    ],
+}
+
+# Key path and a value that neither parser nor schema takes; DELETE takes a required key away.
+DELETE = object()
+WRONG = [
+    ("version", 2), ("version", "1"), ("version", DELETE), ("nmae", 1), ("name", 5), ("simulation", []),
+    ("simulation.particle_radius", 0), ("simulation.particle_radius", "x"), ("simulation.iterations", 2.5),
+    ("simulation.iterations", 101), ("simulation.gravity", [0, 0]), ("simulation.gravity", [0, 0, "x"]),
+    ("simulation.solver", "sph"), ("simulation.vorticity", 1), ("container.visible", 1), ("container.min", None),
+    ("fluid", {}), ("fluid.0.type", "drop"), ("fluid.0.min", DELETE), ("fluid.0.colour", [2, 0, 0]),
+    ("obstacles.0.type", DELETE), ("obstacles.0.radius", 1), ("obstacles.1.radius", 0), ("obstacles.2.height", DELETE),
+    ("obstacles.2.motion", "floating"), ("camera.fov", 1), ("camera.fov", None), ("camera.eye", [1, 2]),
+    ("environment.sky", "blue"), ("environment.floor_level", "x"), ("render.style", "cartoon"),
+    ("render.points.scale", 6), ("render.points.size", 1), ("events.0.time", -1), ("events.0.gravity", [0, 0, 0]),
+    ("events.1.max", DELETE), ("events.3.name", "raycast"), ("events.4.type", "drag"),
+]  # fmt: skip
+
+
+def changed(path, value):
+    scene = copy.deepcopy(FULL)
+    *parents, last = [int(key) if key.isdigit() else key for key in path.split(".")]
+    here = scene
+    for key in parents:
+        here = here[key]
+    if value is DELETE:
+        del here[last]
+    else:
+        here[last] = value
+    return scene
+
+
+def check(scene):
+    """What lido check says to a scene."""
+    return subprocess.run([LIDO, "check", "/dev/stdin"], input=json.dumps(scene).encode(), capture_output=True, timeout=60)
+
+
+def main():
+    schema = json.loads((SOURCES / "configs" / "scene.schema.json").read_text(encoding="utf-8"))
+    jsonschema.Draft7Validator.check_schema(schema)
+    validator = jsonschema.Draft7Validator(schema)
+    failures = []
+    scenes = {p.name: json.loads(p.read_text(encoding="utf-8")) for p in sorted((SOURCES / "configs").glob("*.json"))}
+    del scenes["scene.schema.json"]
+    for name, scene in {**scenes, "everything": FULL}.items():
+        printed = check(scene)
+        if printed.returncode != 0:
+            failures.append(f"{name}: {printed.stderr.decode()}")
+            continue
+        for what, text in ((name, scene), (name + " as printed", json.loads(printed.stdout))):
+            failures += [f"{what}: {e.json_path}: {e.message[:200]}" for e in validator.iter_errors(text)]
+    for path, value in WRONG:
+        scene = changed(path, value)
+        if validator.is_valid(scene):
+            failures.append(f"the schema takes {path} = {value}")
+        if check(scene).returncode != 2:
+            failures.append(f"the parser takes {path} = {value}")
+    print("\n".join(failures) or f"{len(scenes)} scenes and {len(WRONG)} mistakes: schema and parser agree")
+    return 1 if failures else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
