@@ -69,6 +69,7 @@ static bool begin_drawing(Job *job, AppError *error) {
   RenderError cause;
   job->render = render_create(options->width, options->height, &cause);
   if (!job->render) return render_fail(error, &cause);
+  if (options->layer) render_show_layer(job->render, options->layer); // whether the style has it is asked frame by frame
   job->pixels = malloc(size);
   if (job->kind == RECORD_PFM) job->values = malloc(size * sizeof *job->values);
   if (!job->pixels || (job->kind == RECORD_PFM && !job->values)) return app_fail(error, APP_FAILED, "out of memory");
@@ -91,7 +92,6 @@ static bool draw(Job *job, AppError *error) {
   job->frame = source_frame(job->source, render_style_needs(settings->style), error);
   if (!job->frame) return false;
   if (layer && !has_layer(settings->style, layer)) return no_layer(settings->style, layer, error);
-  if (layer && !render_show_layer(job->render, layer)) return no_layer(settings->style, layer, error);
   RenderError cause;
   return render_draw(job->render, job->frame, source_view(job->source), settings, &cause) || render_fail(error, &cause);
 }

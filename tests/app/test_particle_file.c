@@ -278,7 +278,7 @@ static const struct {
     {ONE "POINT_DATA 1\nFIELD f 1\nradius 1 1 float\n0\n", "radius of particle 0 must be above 0, got 0"},
     {ONE "POINT_DATA 1\nFIELD f 1\nradius 1 1 float\nnan\n", "radius of particle 0 is not a finite number"},
     {ONE "POINT_DATA 1\nVECTORS velocity float\n0 0 nan\n", "velocity of particle 0 is not a finite number"},
-    {ONE "POINT_DATA 1\nSCALARS density float 1\nLOOKUP_TABLE default\n", "SCALARS: 1 values were announced"},
+    {ONE "POINT_DATA 1\nSCALARS density float 1\nLOOKUP_TABLE default\n", "line 10: SCALARS: the file ends here"},
     {ONE "POINT_DATA 1\nSCALARS density float 9\n", "SCALARS: 9 is too many, at most 4 can be"},
     {ONE "CELLS 3 99999999999\n1 0", "cells: 99999999999 values were announced"},
     {ONE "CELLS -1 2\n1 0", "cells: a whole number"},

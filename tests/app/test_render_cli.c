@@ -1,0 +1,422 @@
+// lido render through the program: pictures, films, raw frames and layers; parts of a film; particle files against the
+// scene they came from; one context against another.
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include <cjson/cJSON.h>
+#include <cmocka.h>
+
+#include "app/image.h"
+#include "run_lido.h"
+#include "small_scene.h"
+
+#define SIZE "--size", "96x54"
+
+static char folder[256];
+static char scene[512];
+
+static int set_up(void **state) {
+  (void)state;
+  folder_make(folder);
+  snprintf(scene, sizeof scene, "%s/scene.json", folder);
+  file_put_text(scene, SMALL_SCENE SMALL_EVENTS SMALL_END);
+  mkdir(in(folder, "out"), 0777);
+  return 0;
+}
+
+static int tear_down(void **state) {
+  (void)state;
+  folder_remove(folder);
+  return 0;
+}
+
+static void check_done(const LidoRun *run) {
+  if (run->code != 0) fail_msg("exit code %d:\n%s", run->code, run->text);
+}
+
+static void check_said(const LidoRun *run, int code, const char *cause) {
+  if (run->code != code || run->lines != 1 || strncmp(run->text, "lido: ", 6) != 0 || !strstr(run->text, cause))
+    fail_msg("expected exit code %d and '%s', got %d and\n%s", code, cause, run->code, run->text);
+}
+
+static void read_png(const char *name, Image *image) {
+  AppError error;
+  if (!image_read_png(in(folder, name), image, &error)) fail_msg("%s", error.message);
+}
+
+// The share of pixels of which no channel differs by more than `tolerance`.
+static double share_equal(const Image *a, const Image *b, int tolerance) {
+  assert_int_equal(a->width, b->width);
+  assert_int_equal(a->height, b->height);
+  int pixels = a->width * a->height, equal = 0;
+  for (int i = 0; i < pixels; i++) {
+    int worst = 0;
+    for (int k = 0; k < 3; k++) {
+      int difference = abs(a->bytes[3 * i + k] - b->bytes[3 * i + k]);
+      if (difference > worst) worst = difference;
+    }
+    equal += worst <= tolerance;
+  }
+  return (double)equal / pixels;
+}
+
+static double compare_png(const char *name_a, const char *name_b, int tolerance) {
+  Image a, b;
+  read_png(name_a, &a);
+  read_png(name_b, &b);
+  double share = share_equal(&a, &b, tolerance);
+  image_free(&a);
+  image_free(&b);
+  return share;
+}
+
+// ---- Pictures ----------------------------------------------------------------------------------------------------------------
+
+static void test_pictures(void **state) {
+  (void)state;
+  LidoRun run = {0};
+  LIDO(&run, "render", scene, "--frames", "3", SIZE, "-o", in(folder, "out/f_%05d.png"));
+  check_done(&run);
+  assert_non_null(strstr(run.text, "lido: 3 frames written to "));
+  assert_int_equal(folder_count(in(folder, "out")), 3);
+  Image image;
+  read_png("out/f_00002.png", &image);
+  assert_int_equal(image.width, 96);
+  assert_int_equal(image.height, 54);
+  // There is something to see.
+  int darkest = 255, brightest = 0;
+  for (int i = 0; i < 96 * 54 * 3; i++) {
+    if (image.bytes[i] < darkest) darkest = image.bytes[i];
+    if (image.bytes[i] > brightest) brightest = image.bytes[i];
+  }
+  assert_true(brightest - darkest > 60);
+  image_free(&image);
+  assert_true(compare_png("out/f_00000.png", "out/f_00002.png", 0) < 1);
+  // One picture needs no number; --camera looks from elsewhere.
+  LIDO(&run, "render", scene, "--frames", "2:3", SIZE, "-o", in(folder, "one.png"), "--camera", "2,2,2,0,0,0");
+  check_done(&run);
+  assert_true(compare_png("one.png", "out/f_00002.png", 8) < 0.9);
+}
+
+static void test_part_of_film(void **state) {
+  (void)state;
+  LidoRun run = {0};
+  LIDO(&run, "render", scene, "--frames", "9", SIZE, "-q", "-o", in(folder, "out/w_%02d.png"));
+  check_done(&run);
+  LIDO(&run, "render", scene, "--frames", "5:9", SIZE, "-q", "-o", in(folder, "out/p_%02d.png"));
+  check_done(&run);
+  assert_int_equal(run.lines, 0);
+  assert_int_equal(folder_count(in(folder, "out")), 9 + 4);
+  for (int i = 5; i < 9; i++) {
+    char a[32], b[32];
+    snprintf(a, sizeof a, "out/w_%02d.png", i);
+    snprintf(b, sizeof b, "out/p_%02d.png", i);
+    assert_true(files_equal(in(folder, a), in(folder, b)));
+  }
+}
+
+// The same frame, simulated here or read from a file.
+static void test_from_files(void **state) {
+  (void)state;
+  static const char *const endings[] = {"vtk", "ply"};
+  file_put_text(scene, SMALL_SCENE SMALL_END);
+  LidoRun run = {0};
+  LIDO(&run, "render", scene, "--frames", "6:8", SIZE, "-q", "-o", in(folder, "out/s_%d.png"));
+  check_done(&run);
+  for (int e = 0; e < 2; e++) {
+    char pattern[32], picture[32];
+    snprintf(pattern, sizeof pattern, "p_%%03d.%s", endings[e]);
+    LIDO(&run, "simulate", scene, "--frames", "9", "-q", "-o", in(folder, pattern));
+    check_done(&run);
+    snprintf(picture, sizeof picture, "out/%s_%%d.png", endings[e]);
+    LIDO(&run, "render", in(folder, pattern), "--frames", "6:8", SIZE, "-q", "-o", in(folder, picture));
+    check_done(&run);
+    for (int i = 6; i < 8; i++) {
+      char a[32], b[32];
+      snprintf(a, sizeof a, "out/s_%d.png", i);
+      snprintf(b, sizeof b, "out/%s_%d.png", endings[e], i);
+      double share = compare_png(a, b, 2);
+      if (share < 0.995) fail_msg("frame %d from %s: only %.2f %% of the pixels are equal", i, endings[e], 100 * share);
+    }
+  }
+  assert_int_equal(folder_count(in(folder, "out")), 6);
+}
+
+// A series with gaps, from another program, of which nothing but positions is known.
+static void test_foreign_series(void **state) {
+  (void)state;
+  for (int i = 10; i <= 30; i += 10) {
+    char name[32], text[4000] = "# vtk DataFile Version 2.0\nx\nASCII\nDATASET POLYDATA\nPOINTS 64 float\n";
+    snprintf(name, sizeof name, "p_%d.vtk", i);
+    for (int k = 0; k < 64; k++)
+      snprintf(text + strlen(text), sizeof text - strlen(text), "%g %g %g\n", k % 4 * 0.1, k / 4 % 4 * 0.1 + i * 0.01,
+               k / 16 * 0.1);
+    file_put_text(in(folder, name), text);
+  }
+  LidoRun run = {0};
+  LIDO(&run, "render", in(folder, "p_%d.vtk"), SIZE, "-q", "-o", in(folder, "out/f_%d.png"), "--stats",
+       in(folder, "s.jsonl"));
+  check_done(&run);
+  assert_int_equal(folder_count(in(folder, "out")), 3);
+  assert_true(compare_png("out/f_10.png", "out/f_30.png", 0) < 0.999);
+  // Drawn alone, the last one looks just as it does in the series.
+  LIDO(&run, "render", in(folder, "p_%d.vtk"), SIZE, "-q", "--frames", "30:31", "-o", in(folder, "one.png"));
+  check_done(&run);
+  assert_true(files_equal(in(folder, "one.png"), in(folder, "out/f_30.png")));
+  size_t size;
+  char *text = (char *)file_get(in(folder, "s.jsonl"), &size);
+  assert_non_null(strstr(text, "\"frame\": 30"));
+  assert_non_null(strstr(text, "\"energy\": null"));
+  free(text);
+}
+
+static void test_no_particles(void **state) {
+  (void)state;
+  file_put_text(in(folder, "p.vtk"), "# vtk DataFile Version 3.0\nx\nASCII\nDATASET POLYDATA\nPOINTS 0 float\n");
+  file_put_text(in(folder, "q.vtk"), "# vtk DataFile Version 3.0\nx\nASCII\nDATASET POLYDATA\nPOINTS 1 float\n1 2 3\n");
+  LidoRun run = {0};
+  LIDO(&run, "render", in(folder, "p.vtk"), SIZE, "-q", "-o", in(folder, "p.png"));
+  check_done(&run);
+  LIDO(&run, "render", in(folder, "q.vtk"), SIZE, "-q", "-o", in(folder, "q.png"));
+  check_done(&run);
+}
+
+// ---- Contexts ------------------------------------------------------------------------------------------------------------------
+
+static void test_contexts(void **state) {
+  (void)state;
+#if LIDO_OSMESA
+  static const char *const sources[] = {"configs/dam_break.json", "configs/double_dam_break.json"};
+  for (int i = 0; i < 2; i++) {
+    LidoRun run = {0};
+    LIDO(&run, "render", sources[i], "--frames", "1:2", "--size", "320x180", "-q", "--context", "egl", "-o",
+         in(folder, "egl.png"));
+    check_done(&run);
+    LIDO(&run, "render", sources[i], "--frames", "1:2", "--size", "320x180", "-q", "--context", "osmesa", "-o",
+         in(folder, "osmesa.png"));
+    check_done(&run);
+    double share = compare_png("egl.png", "osmesa.png", 2);
+    if (share < 0.995) fail_msg("%s: EGL and OSMesa agree on %.3f %% of the pixels only", sources[i], 100 * share);
+  }
+#else
+  skip(); // built without OSMesa
+#endif
+}
+
+// ---- Layers ----------------------------------------------------------------------------------------------------------------------
+
+static void test_layers(void **state) {
+  (void)state;
+  LidoRun run = {0};
+  LIDO(&run, "render", scene, "--frames", "1", SIZE, "-q", "--layer", "depth", "-o", in(folder, "d.png"));
+  check_done(&run);
+  LIDO(&run, "render", scene, "--frames", "1", SIZE, "-q", "--layer", "depth", "-o", in(folder, "d.pfm"));
+  check_done(&run);
+  LIDO(&run, "render", scene, "--frames", "1", SIZE, "-q", "-o", in(folder, "f.png"));
+  check_done(&run);
+  assert_true(compare_png("d.png", "f.png", 8) < 0.9);
+  Image image;
+  AppError error;
+  assert_true(image_read_pfm(in(folder, "d.pfm"), &image, &error));
+  assert_int_equal(image.width, 96);
+  assert_int_equal(image.channels, 1);
+  int plausible = 0;
+  for (int i = 0; i < 96 * 54; i++) plausible += image.values[i] > 0.05f && image.values[i] < 50;
+  assert_true(plausible > 100); // metres to the floor or the water
+  image_free(&image);
+  LIDO(&run, "render", scene, "--frames", "1", SIZE, "-q", "--layer", "smell", "-o", in(folder, "out/x.png"));
+  check_said(&run, 2, "--layer smell: style 'points' has no such layer; it has: ");
+  assert_int_equal(folder_count(in(folder, "out")), 0);
+  LIDO(&run, "render", scene, "--frames", "1", "--style", "refraction", "-o", in(folder, "out/x.png"));
+  check_said(&run, 2, "style");
+}
+
+// ---- Films and raw frames --------------------------------------------------------------------------------------------------------
+
+// What ffprobe says about a film: "width,height,frames".
+static void probe(const char *path, char text[128]) {
+  char command[1024];
+  snprintf(command, sizeof command,
+           "ffprobe -v error -count_frames -select_streams v:0 -show_entries "
+           "stream=width,height,nb_read_frames -of csv=p=0 '%s'",
+           path);
+  FILE *pipe = popen(command, "r");
+  assert_non_null(pipe);
+  if (!fgets(text, 128, pipe)) text[0] = '\0';
+  text[strcspn(text, "\r\n")] = '\0';
+  assert_int_equal(pclose(pipe), 0);
+}
+
+static void test_film(void **state) {
+  (void)state;
+  if (system("command -v ffmpeg ffprobe >/dev/null") != 0) skip();
+  LidoRun run = {0};
+  char text[128];
+  LIDO(&run, "render", scene, "--frames", "7", SIZE, "-q", "-o", in(folder, "out/film 50%%: a.mp4"));
+  check_done(&run);
+  assert_int_equal(run.lines, 0);
+  assert_int_equal(folder_count(in(folder, "out")), 1);
+  probe(in(folder, "out/film 50%: a.mp4"), text);
+  assert_string_equal(text, "96,54,7");
+  // Odd sizes grow by a pixel, which 4:2:0 needs.
+  LIDO(&run, "render", scene, "--frames", "2", "--size", "33x17", "-q", "-o", in(folder, "odd.mkv"));
+  check_done(&run);
+  probe(in(folder, "odd.mkv"), text);
+  assert_string_equal(text, "34,18,2");
+}
+
+static void test_film_interrupted(void **state) {
+  (void)state;
+  if (system("command -v ffmpeg ffprobe >/dev/null") != 0) skip();
+  // The film is one file, so the frames are told by the statistics' device: wait for ffmpeg's part file instead.
+  LidoRun run = {.interrupt_when = in(folder, "out")};
+  LIDO(&run, "render", scene, "--frames", "100000", SIZE, "-q", "-o", in(folder, "film.mp4"));
+  assert_int_equal(run.code, 1);
+  int written = -1;
+  char text[128], expected[64];
+  assert_int_equal(sscanf(run.text, "lido: interrupted: %d of 100000 frames written", &written), 1);
+  assert_int_equal(file_exists(in(folder, "film.mp4")), written > 0);
+  assert_int_equal(folder_count(folder), written > 0 ? 3 : 2); // scene.json, out/ and perhaps the film
+  if (written == 0) return;
+  probe(in(folder, "film.mp4"), text);
+  snprintf(expected, sizeof expected, "96,54,%d", written);
+  assert_string_equal(text, expected);
+}
+
+// A program named ffmpeg that does what the script says.
+static void fake_ffmpeg(const char *script) {
+  mkdir(in(folder, "bin"), 0777);
+  file_put_text(in(folder, "bin/ffmpeg"), script);
+  chmod(in(folder, "bin/ffmpeg"), 0777);
+}
+
+static void test_film_fails(void **state) {
+  (void)state;
+  static const struct {
+    const char *script, *cause;
+  } fakes[] = {
+      {"#!/bin/sh\nexit 3\n", "ffmpeg failed with exit code 3"},
+      {"#!/bin/sh\necho first >&2\necho 'no such codec' >&2\nexit 1\n", "film.mp4: ffmpeg failed: no such codec"},
+      {"#!/bin/sh\nkill -9 $$\n", "ffmpeg was ended by signal 9"},
+      {"#!/bin/sh\n/bin/cat >/dev/null\nexit 4\n", "ffmpeg failed with exit code 4"},
+      {"no program at all\n", "film.mp4: ffmpeg "},
+  };
+  LidoRun run = {.path_variable = in(folder, "bin")};
+  mkdir(in(folder, "bin"), 0777);
+  LIDO(&run, "render", scene, "--frames", "40", SIZE, "-q", "-o", in(folder, "out/film.mp4"));
+  check_said(&run, 1, "film.mp4: ffmpeg is needed for films and was not found");
+  assert_int_equal(folder_count(in(folder, "out")), 0);
+  for (size_t i = 0; i < sizeof fakes / sizeof *fakes; i++) {
+    fake_ffmpeg(fakes[i].script);
+    LIDO(&run, "render", scene, "--frames", "40", SIZE, "-q", "-o", in(folder, "out/film.mp4"));
+    check_said(&run, 1, fakes[i].cause);
+    assert_int_equal(folder_count(in(folder, "out")), 0);
+  }
+}
+
+static void test_film_full_disk(void **state) {
+  (void)state;
+  if (system("command -v ffmpeg >/dev/null") != 0) skip();
+  LidoRun run = {.file_size_limit = 3000};
+  LIDO(&run, "render", scene, "--frames", "12", SIZE, "-q", "-o", in(folder, "out/film.mp4"));
+  check_said(&run, 1, "film.mp4: ffmpeg ");
+  assert_int_equal(folder_count(in(folder, "out")), 0);
+}
+
+static void test_raw(void **state) {
+  (void)state;
+  const char *path = in(folder, "raw.rgb");
+  LidoRun run = {.stdout_to = path};
+  LIDO(&run, "render", scene, "--frames", "3", SIZE, "-o", "-");
+  check_done(&run);
+  assert_int_equal(run.lines, 1); // on stderr; stdout holds pictures only
+  size_t size;
+  uint8_t *bytes = file_get(path, &size);
+  assert_int_equal(size, 3 * 96 * 54 * 3);
+  LidoRun png = {0};
+  LIDO(&png, "render", scene, "--frames", "2:3", SIZE, "-q", "-o", in(folder, "f.png"));
+  check_done(&png);
+  Image image;
+  read_png("f.png", &image);
+  assert_memory_equal(image.bytes, bytes + 2 * 96 * 54 * 3, 96 * 54 * 3);
+  image_free(&image);
+  free(bytes);
+}
+
+static void test_reader_goes_away(void **state) {
+  (void)state;
+  LidoRun run = {.close_reader = true};
+  LIDO(&run, "render", scene, "--frames", "12", "--size", "640x360", "-q", "-o", "-");
+  check_said(&run, 1, "standard output: its reader has gone");
+  run = (LidoRun){.stdout_to = "/dev/full"};
+  LIDO(&run, "render", scene, "--frames", "2", SIZE, "-q", "-o", "-");
+  check_said(&run, 1, "standard output: cannot be written: No space left on device");
+}
+
+static void test_interrupt(void **state) {
+  (void)state;
+  LidoRun run = {.interrupt_when = in(folder, "out/f_00001.png")};
+  LIDO(&run, "render", scene, "--frames", "100000", SIZE, "-q", "-o", in(folder, "out/f_%05d.png"));
+  int written = 0;
+  assert_int_equal(run.code, 1);
+  assert_int_equal(run.lines, 1);
+  assert_int_equal(sscanf(run.text, "lido: interrupted: %d of 100000 frames written", &written), 1);
+  assert_int_equal(folder_count(in(folder, "out")), written);
+  char name[32];
+  snprintf(name, sizeof name, "out/f_%05d.png", written - 1);
+  Image image;
+  read_png(name, &image);
+  image_free(&image);
+}
+
+// ---- Statistics ------------------------------------------------------------------------------------------------------------------
+
+static void test_stats(void **state) {
+  (void)state;
+  LidoRun run = {0};
+  LIDO(&run, "render", scene, "--frames", "4", SIZE, "-q", "-o", in(folder, "out/f_%05d.png"), "--stats",
+       in(folder, "s.jsonl"));
+  check_done(&run);
+  size_t size;
+  char *text = (char *)file_get(in(folder, "s.jsonl"), &size);
+  int lines = 0;
+  for (char *line = strtok(text, "\n"); line; line = strtok(NULL, "\n"), lines++) {
+    const char *end;
+    cJSON *object = cJSON_ParseWithOpts(line, &end, true);
+    if (!object) fail_msg("line %d is no JSON: %s", lines + 1, line);
+    const cJSON *passes = cJSON_GetObjectItem(object, "pass_ms");
+    assert_true(cJSON_GetArraySize(passes) >= 2);
+    assert_true(cJSON_IsString(cJSON_GetObjectItem(cJSON_GetArrayItem(passes, 0), "name")));
+    assert_true(cJSON_IsObject(cJSON_GetObjectItem(object, "stage_ms")));
+    cJSON_Delete(object);
+  }
+  assert_int_equal(lines, 4);
+  free(text);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test_setup_teardown(test_pictures, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(test_part_of_film, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(test_from_files, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(test_foreign_series, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(test_no_particles, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(test_contexts, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(test_layers, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(test_film, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(test_film_interrupted, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(test_film_fails, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(test_film_full_disk, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(test_raw, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(test_reader_goes_away, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(test_interrupt, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(test_stats, set_up, tear_down),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,228 @@
+// lido simulate through the program: the same bytes for any number of threads, nothing outside the container, statistics
+// that are JSON, and a Ctrl-C that leaves whole files only.
+//
+// With the argument `long` the dam break runs for its first second; without, a short piece of it.
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cjson/cJSON.h>
+#include <cmocka.h>
+
+#include "app/particle_file.h"
+#include "run_lido.h"
+#include "small_scene.h"
+
+static char folder[256];
+static char scene[512];
+static bool everything;
+
+static int set_up(void **state) {
+  (void)state;
+  folder_make(folder);
+  snprintf(scene, sizeof scene, "%s/scene.json", folder);
+  file_put_text(scene, SMALL_SCENE SMALL_EVENTS SMALL_END);
+  return 0;
+}
+
+static int tear_down(void **state) {
+  (void)state;
+  folder_remove(folder);
+  return 0;
+}
+
+static void check_done(const LidoRun *run) {
+  if (run->code != 0) fail_msg("exit code %d:\n%s", run->code, run->text);
+}
+
+static void read_frame(const char *pattern, int number, ParticleFile *file) {
+  char name[64];
+  snprintf(name, sizeof name, pattern, number);
+  AppError error;
+  if (!particle_file_read(in(folder, name), file, &error)) fail_msg("%s", error.message);
+}
+
+static void check_inside(const ParticleFile *file) {
+  assert_true(file->has_container);
+  for (int i = 0; i < file->count; i++) {
+    for (int k = 0; k < 3; k++) {
+      float x = file->position[3 * i + k];
+      if (!(x >= file->container.min[k] && x <= file->container.max[k]))
+        fail_msg("frame %d: particle %u lies outside: %g along axis %d", (int)file->index, file->id[i], (double)x, k);
+    }
+  }
+}
+
+// Simulate twice, with one thread and with two, and compare all files.
+static void check_threads(const char *source, int frames, const char *ending) {
+  char count[16], pattern[2][32], name[2][64];
+  snprintf(count, sizeof count, "%d", frames);
+  for (int t = 0; t < 2; t++) {
+    snprintf(pattern[t], sizeof pattern[t], "t%d/p_%%05d.%s", t + 1, ending);
+    LidoRun run = {0};
+    LIDO(&run, "simulate", source, "--frames", count, "--threads", t ? "2" : "1", "-q", "-o", in(folder, pattern[t]));
+    check_done(&run);
+    assert_int_equal(run.lines, 0);
+    assert_int_equal(folder_count(in(folder, t ? "t2" : "t1")), frames);
+  }
+  for (int i = 0; i < frames; i++) {
+    for (int t = 0; t < 2; t++) snprintf(name[t], sizeof name[t], "t%d/p_%05d.%s", t + 1, i, ending);
+    if (!files_equal(in(folder, name[0]), in(folder, name[1]))) fail_msg("frame %d differs between 1 and 2 threads", i);
+    ParticleFile file;
+    AppError error;
+    assert_true(particle_file_read(in(folder, name[0]), &file, &error));
+    assert_int_equal(file.index, i);
+    assert_true(file.count > 0);
+    check_inside(&file);
+    particle_file_free(&file);
+  }
+}
+
+static void test_dam_break(void **state) {
+  (void)state;
+  check_threads("configs/dam_break.json", everything ? 60 : 4, "vtk");
+}
+
+static void test_small(void **state) {
+  (void)state;
+  check_threads(scene, 12, "ply");
+}
+
+// Particles keep their place from file to file, also when more are poured in.
+static void test_ids(void **state) {
+  (void)state;
+  LidoRun run = {0};
+  LIDO(&run, "simulate", scene, "--frames", "12", "-q", "-o", in(folder, "p_%05d.vtk"));
+  check_done(&run);
+  ParticleFile first, last;
+  read_frame("p_%05d.vtk", 0, &first);
+  read_frame("p_%05d.vtk", 11, &last);
+  assert_true(last.count > first.count);
+  for (int i = 0; i < first.count; i++) assert_int_equal(first.id[i], last.id[i]);
+  assert_true(memcmp(first.position, last.position, (size_t)first.count * 12) != 0);
+  assert_float_equal(last.time, 11.0 / 60, 1e-9);
+  particle_file_free(&first);
+  particle_file_free(&last);
+}
+
+// A part of the film holds the same frames as the whole.
+static void test_part(void **state) {
+  (void)state;
+  LidoRun run = {0};
+  LIDO(&run, "simulate", scene, "-q", "-o", in(folder, "whole/p_%05d.vtk")); // 0.2 s
+  check_done(&run);
+  assert_int_equal(folder_count(in(folder, "whole")), 12);
+  LIDO(&run, "simulate", scene, "--frames", "5:8", "-q", "-o", in(folder, "part/p_%05d.vtk"));
+  check_done(&run);
+  assert_int_equal(folder_count(in(folder, "part")), 3);
+  for (int i = 5; i < 8; i++) {
+    char a[64], b[64];
+    snprintf(a, sizeof a, "whole/p_%05d.vtk", i);
+    snprintf(b, sizeof b, "part/p_%05d.vtk", i);
+    assert_true(files_equal(in(folder, a), in(folder, b)));
+  }
+  LIDO(&run, "simulate", scene, "--frames", "12:", "-q", "-o", in(folder, "none/p_%05d.vtk"));
+  assert_int_equal(run.code, 2);
+  assert_non_null(strstr(run.text, "the scene ends with frame 11"));
+}
+
+// ---- Statistics ----------------------------------------------------------------------------------------------------------------
+
+static double number(const cJSON *object, const char *key) {
+  const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, key);
+  if (!cJSON_IsNumber(item)) fail_msg("%s is missing or no number", key);
+  return item->valuedouble;
+}
+
+static void test_stats(void **state) {
+  (void)state;
+  LidoRun run = {0};
+  LIDO(&run, "simulate", scene, "--frames", "2:10", "-q", "-o", in(folder, "p_%05d.vtk"), "--stats",
+       in(folder, "logs/s.jsonl"));
+  check_done(&run);
+  size_t size;
+  char *text = (char *)file_get(in(folder, "logs/s.jsonl"), &size);
+  int lines = 0;
+  for (char *line = strtok(text, "\n"); line; line = strtok(NULL, "\n"), lines++) {
+    const char *end;
+    cJSON *object = cJSON_ParseWithOpts(line, &end, true);
+    if (!object) fail_msg("line %d is no JSON: %s", lines + 1, line);
+    assert_float_equal(number(object, "frame"), 2 + lines, 0);
+    assert_float_equal(number(object, "time"), (2 + lines) / 60.0, 1e-8);
+    assert_true(number(object, "particles") > 100);
+    assert_true(number(object, "substeps") >= 1);
+    assert_true(number(object, "max_speed") > 0);
+    const cJSON *energy = cJSON_GetObjectItem(object, "energy"), *error = cJSON_GetObjectItem(object, "density_error");
+    assert_true(number(energy, "kinetic") > 0);
+    assert_true(number(energy, "potential") > 0);
+    assert_true(number(error, "mean") >= 0 && number(error, "mean") <= number(error, "max"));
+    assert_true(number(cJSON_GetObjectItem(object, "stage_ms"), "density") > 0);
+    assert_true(cJSON_IsNull(cJSON_GetObjectItem(object, "pass_ms")));
+    cJSON_Delete(object);
+  }
+  assert_int_equal(lines, 8);
+  assert_int_equal(folder_count(in(folder, "logs")), 1);
+  free(text);
+}
+
+// ---- Ended early ---------------------------------------------------------------------------------------------------------------
+
+static void test_interrupt(void **state) {
+  (void)state;
+  LidoRun run = {.interrupt_when = in(folder, "out/p_00002.vtk")};
+  LIDO(&run, "simulate", "configs/dam_break.json", "--frames", "100000", "-q", "-o", in(folder, "out/p_%05d.vtk"),
+       "--stats", in(folder, "s.jsonl"));
+  assert_int_equal(run.code, 1);
+  assert_int_equal(run.lines, 1);
+  int written = 0;
+  assert_int_equal(sscanf(run.text, "lido: interrupted: %d of 100000 frames written", &written), 1);
+  assert_true(written >= 3);
+  // Exactly the whole files, nothing half.
+  assert_int_equal(folder_count(in(folder, "out")), written);
+  for (int i = 0; i < written; i++) {
+    ParticleFile file;
+    read_frame("out/p_%05d.vtk", i, &file);
+    assert_true(file.count > 10000);
+    particle_file_free(&file);
+  }
+  size_t size;
+  char *text = (char *)file_get(in(folder, "s.jsonl"), &size);
+  int lines = 0;
+  for (const char *c = text; *c; c++) lines += *c == '\n';
+  assert_int_equal(lines, written);
+  free(text);
+}
+
+// On a terminal and off it, quiet or not: what is said is said on stderr, and little of it.
+static void test_words(void **state) {
+  (void)state;
+  const char *out = in(folder, "stdout");
+  LidoRun run = {.stdout_to = out};
+  LIDO(&run, "simulate", scene, "--frames", "3", "-o", in(folder, "p_%05d.vtk"));
+  check_done(&run);
+  assert_int_equal(run.lines, 1);
+  assert_non_null(strstr(run.text, "lido: 3 frames written to "));
+  assert_null(strchr(run.text, '\033'));
+  size_t size;
+  free(file_get(out, &size));
+  assert_int_equal(size, 0);
+}
+
+int main(int argc, char **argv) {
+  everything = argc > 1 && strcmp(argv[1], "long") == 0;
+  const struct CMUnitTest long_tests[] = {cmocka_unit_test_setup_teardown(test_dam_break, set_up, tear_down)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test_setup_teardown(test_dam_break, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(test_small, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(test_ids, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(test_part, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(test_stats, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(test_interrupt, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(test_words, set_up, tear_down),
+  };
+  if (everything) return cmocka_run_group_tests(long_tests, NULL, NULL);
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
