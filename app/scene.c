@@ -82,6 +82,7 @@ bool scene_load_text(Scene *scene, const char *name, const char *text, size_t si
   if (!root) return app_fail(error, APP_FAILED, "%s: out of memory", name);
   bool good = load_tree(&source, root, scene);
   cJSON_Delete(root);
+  if (good && !(scene->path = strdup(name))) good = app_fail(error, APP_FAILED, "%s: out of memory", name);
   if (!good) scene_free(scene);
   return good;
 }
@@ -100,6 +101,7 @@ bool scene_load(Scene *scene, const char *path, const char *const *sets, int set
 }
 
 void scene_free(Scene *scene) {
+  free(scene->path);
   free(scene->fluid);
   free(scene->obstacles);
   free(scene->events);

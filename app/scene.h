@@ -59,6 +59,8 @@ typedef enum SceneEventType { EVENT_PUSH, EVENT_POUR, EVENT_TILT, EVENT_STYLE, E
 typedef struct Scene {
   SCENE_TOP(SCENE_MEMBER, SCENE_MEMBER_OBJECT, SCENE_MEMBER_LIST, SCENE_MEMBER_VARIANT, Scene)
 
+  char *path; // of the file, as it was found, for messages
+
   // Made from the above when the scene is loaded, for scene_world_def.
   SimBlockDef *blocks;  // (fluid_count)
   SimObstacle *solids;  // (obstacles_count)

@@ -121,7 +121,7 @@
   F(S, STYLE,     style,           "",         "",                 "\"points\"",     "How the water is drawn.") \
   F(S, CHOICE,    tone_map,        "",         "none | filmic",    "\"filmic\"",     "none: pictures hold 255 × the linear value, for measurements.") \
   F(S, NUMBER,    exposure,        "",         "[0.001, 1000]",       "1",              "Factor before the tone curve.") \
-  F(S, VECTOR,    absorption,      "1/m",      "[0, 10000]",       "[1.8, 0.42, 0.3]", "How strongly the water takes away red, green and blue light.") \
+  F(S, VECTOR,    absorption,      "1/m",      "[0, 10000]",       "[3, 0.75, 0.55]", "How strongly the water takes away red, green and blue light.") \
   F(S, NUMBER,    refractive_index, "",        "[1, 3]",           "1.333",          "Of the water.") \
   O(S, ScenePoints, points,        "The style points.")
 
