@@ -56,7 +56,7 @@ static bool read_real(const Value *value, double *member) {
 }
 
 static bool read_number(const Value *value, float *member) {
-  double number;
+  double number = 0;
   if (!read_real(value, &number)) return false;
   *member = (float)number;
   // An open end of the range must not be met by rounding.
@@ -144,7 +144,7 @@ static bool read_direction(const Value *value, float *member) {
 }
 
 static bool read_value(const Value *value, void *member) {
-  double number;
+  double number = 0;
   switch (value->field->type) {
   case SCENE_NUMBER: return read_number(value, member);
   case SCENE_REAL: return read_real(value, member);
