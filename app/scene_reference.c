@@ -87,9 +87,9 @@ static void add_section(Text *text, const SceneObject *object, const char *path,
     const SceneField *field = &object->fields[i];
     char inner[128];
     if (field->type == SCENE_VARIANT)
-      snprintf(inner, sizeof inner, "\"type\": \"%s\"", field->key);
+      snprintf(inner, sizeof inner, "\"type\": \"%.40s\"", field->key);
     else
-      snprintf(inner, sizeof inner, "%s.%s", path, field->key);
+      snprintf(inner, sizeof inner, "%.80s.%.40s", path, field->key);
     if (field->type == SCENE_OBJECT || field->type == SCENE_LIST || field->type == SCENE_VARIANT)
       add_section(text, field->object, inner, field->doc, level + 1);
   }
