@@ -83,23 +83,29 @@ void hud_measure(const char *text, int *lines, int *columns) {
   }
 }
 
+static void append(char *text, size_t size, size_t *used, char character, int count) {
+  for (; count > 0 && *used + 1 < size; count--) text[(*used)++] = character;
+  text[*used] = '\0';
+}
+
 char *hud_block(const char *text, char *block, size_t size) {
-  int lines = 0, columns = 0, column = 0;
+  int lines = 0, columns = 0;
   size_t used = 0;
   hud_measure(text, &lines, &columns);
-  for (const char *c = text; lines > 0 && used + 1 < size; c++) {
-    if (*c == '\n' || *c == '\0')
-      while (column < columns && used + 1 < size) block[used++] = ' ', column++;
-    if (*c == '\0' || used + 1 >= size) break;
-    block[used++] = *c;
-    column = *c == '\n' ? 0 : column + 1;
+  block[0] = '\0';
+  for (int i = 0; i < lines; i++) {
+    int length = (int)strcspn(text, "\n");
+    if (i > 0) append(block, size, &used, '\n', 1);
+    append(block, size, &used, ' ', 1);
+    for (int k = 0; k < length; k++) append(block, size, &used, text[k], 1);
+    append(block, size, &used, ' ', columns - length + 1);
+    text += length + 1;
   }
-  block[used] = '\0';
   return block;
 }
 
-int hud_scale(float monitor_scale, int width, int columns) {
+int hud_scale(float monitor_scale, int width) {
   int scale = (int)fminf(fmaxf(roundf(2 * monitor_scale), 1), 16);
-  while (scale > 1 && (columns + 2) * HUD_GLYPH_WIDTH * scale > width) scale--;
+  while (scale > 1 && HUD_COLUMNS * HUD_GLYPH_WIDTH * scale > width) scale--;
   return scale;
 }

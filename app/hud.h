@@ -60,14 +60,18 @@ char *hud_wrap(const char *message, int columns, char *text, size_t size);
 /// Lines of a text, and characters of its longest line.
 void hud_measure(const char *text, int *lines, int *columns);
 
-/// Fill every line with spaces to the length of the longest, so that the veil behind the text is one block.
+/// Fill every line with spaces to the length of the longest, with one more on either side, so that the veil behind the
+/// text is one block with a margin.
 char *hud_block(const char *text, char *block, size_t size);
 
 /// A character of render_text at scale 1, pixels.
 enum { HUD_GLYPH_WIDTH = 6, HUD_LINE_HEIGHT = 11 };
 
-/// The scale for a text of `columns` characters in a window of `width` pixels: twice the monitor's, less where it would
-/// not fit, at least 1.
-int hud_scale(float monitor_scale, int width, int columns);
+/// The longest line of the help, with its margins.
+enum { HUD_COLUMNS = 62 };
+
+/// The scale of all text in a window of `width` pixels: twice the monitor's, less where the help would not fit, at
+/// least 1.
+int hud_scale(float monitor_scale, int width);
 
 #endif

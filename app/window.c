@@ -263,7 +263,7 @@ static int draw_block(Window *window, int y, bool upwards, const char *text) {
   int lines = 0, columns = 0;
   hud_measure(text, &lines, &columns);
   if (lines == 0) return y;
-  int scale = hud_scale(window->input.scale, window->width, columns), line = HUD_LINE_HEIGHT * scale;
+  int scale = hud_scale(window->input.scale, window->width), line = HUD_LINE_HEIGHT * scale;
   if (upwards) y -= lines * line;
   render_text(window->render, HUD_GLYPH_WIDTH * scale, y, scale, hud_block(text, block, sizeof block));
   return y + (lines + 1) * line;
@@ -296,8 +296,8 @@ static void draw_hud(Window *window) {
     snprintf(message, sizeof message, "The simulation stopped: %s. Press R to start again.", failure);
   else if (glfwGetTime() < window->notice_end)
     snprintf(message, sizeof message, "%s", window->notice);
-  int scale = hud_scale(window->input.scale, window->width, 48);
-  hud_wrap(message, window->width / (HUD_GLYPH_WIDTH * scale) - 2, text, sizeof text);
+  int scale = hud_scale(window->input.scale, window->width);
+  hud_wrap(message, window->width / (HUD_GLYPH_WIDTH * scale) - 4, text, sizeof text);
   draw_block(window, window->height - margin, true, text);
 }
 
@@ -405,9 +405,11 @@ static void set_up_eye(Window *window) {
 
 static bool open_window(Window *window, AppError *error) {
   const Options *options = window->options;
-  window->glfw = context_glfw_open(
-      &(GlfwWindowDef){.title = "Lido", .width = options->width, .height = options->height, .visible = true}, error);
-  if (!window->glfw) return false;
+  const GlfwWindowDef def = {.title = "Lido", .width = options->width, .height = options->height, .visible = true};
+  AppError why;
+  window->glfw = context_glfw_open(&def, &why);
+  if (!window->glfw)
+    return app_fail(error, APP_FAILED, "%s; 'lido render' makes pictures without a window", why.message);
   glfwSwapInterval(1);
   glfwGetFramebufferSize(window->glfw, &window->width, &window->height);
   RenderError reason;

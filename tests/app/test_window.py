@@ -24,7 +24,7 @@ PATIENCE = 60  # s: how long anything may take on a slow machine under a sanitiz
 
 POOL = {
     "version": 1, "name": "pool",
-    "simulation": {"particle_radius": 0.03},
+    "simulation": {"particle_radius": 0.03, "viscosity": 0.2},
     "container": {"min": [0, 0, 0], "max": [1.2, 0.8, 0.6]},
     "fluid": [{"type": "block", "min": [0, 0, 0], "max": [1.2, 0.3, 0.6]}],
 }
@@ -48,11 +48,19 @@ def xdotool(*arguments):
                           timeout=PATIENCE).stdout.strip()
 
 
+def write_scene(folder, scene):
+    path = os.path.join(folder, "scene.json")
+    with open(path, "w") as file:
+        json.dump(scene, file)
+    return path
+
+
 @contextlib.contextmanager
 def virtual_display():
     """Xvfb on a display number that it finds itself."""
     read, write = os.pipe()
-    server = subprocess.Popen(["Xvfb", "-displayfd", str(write), "-screen", "0", "1024x768x24", "-nolisten", "tcp"],
+    server = subprocess.Popen(["Xvfb", "-displayfd", str(write), "-screen", "0", "1024x768x24", "-nolisten", "tcp",
+                               "-noreset"],
                               pass_fds=[write], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
                               stderr=subprocess.DEVNULL)
     os.close(write)
@@ -63,6 +71,8 @@ def virtual_display():
             raise AssertionError("Xvfb did not start")
         os.environ["DISPLAY"] = ":" + number
         os.environ.pop("WAYLAND_DISPLAY", None)
+        wait_until("the display answers", lambda: subprocess.run(["xdotool", "getdisplaygeometry"],
+                                                                  capture_output=True).returncode == 0)
         yield
     finally:
         server.terminate()
@@ -74,9 +84,7 @@ class Window:
 
     def __init__(self, folder, *arguments, scene=POOL):
         self.folder = folder
-        path = os.path.join(folder, "scene.json")
-        with open(path, "w") as file:
-            json.dump(scene, file)
+        path = write_scene(folder, scene)
         self.errors = open(os.path.join(folder, "stderr"), "w+")
         self.process = subprocess.Popen([PROGRAM, path, "--size", "480x320", "--threads", "1", *map(str, arguments)],
                                         cwd=folder, stderr=self.errors)
@@ -101,6 +109,7 @@ class Window:
         return found.stdout.split()[0] if found.stdout.split() else None
 
     def title(self):
+        assert self.process.poll() is None, f"ended with {self.process.returncode}: {self.messages()}"
         return xdotool("getwindowname", self.id)
 
     def frame(self):
@@ -179,16 +188,16 @@ def read_png(path):
 
 # ---- Cases ------------------------------------------------------------------------------------------------------------
 
-def largest_energy(folder, hand, frames=140):
-    """Largest kinetic energy (J) of a settled pool from frame 50 on, while `hand` acts."""
+def largest_energy(folder, hand, frames=100):
+    """Largest kinetic energy (J) of a settled pool from frame 40 on, while `hand` acts."""
     stats = os.path.join(folder, "stats.jsonl")
     with Window(folder, "--frames", frames, "--stats", stats) as window:
-        window.wait_frame(50)
+        window.wait_frame(40)
         hand(window)
         window.ends_with(0)
     lines = [json.loads(line) for line in open(stats)]
     assert [line["frame"] for line in lines] == list(range(frames)), "not every frame once"
-    return max(line["energy"]["kinetic"] for line in lines if line["frame"] > 50)
+    return max(line["energy"]["kinetic"] for line in lines if line["frame"] > 40)
 
 
 def stroke(window, button, *keys):
@@ -387,21 +396,20 @@ def case_failure_is_shown(folder):
 
 
 def case_no_display(folder):
+    path = write_scene(folder, POOL)
     for environment in [{"DISPLAY": ""}, {"DISPLAY": ":98765"}]:
-        run = subprocess.run([PROGRAM], cwd=folder, env={**os.environ, **environment}, capture_output=True, text=True,
+        run = subprocess.run([PROGRAM, path], cwd=folder, env={**os.environ, **environment}, capture_output=True, text=True,
                              timeout=PATIENCE)
         assert run.returncode == 1, f"ended with {run.returncode}"
         assert run.stderr.count("\n") == 1 and "display" in run.stderr and "lido render" in run.stderr, run.stderr
-        run = subprocess.run([PROGRAM, "render", "dam_break", "--frames", "1", "--context", "glfw", "-o", "f_%d.png"],
+        run = subprocess.run([PROGRAM, "render", path, "--frames", "1", "--context", "glfw", "-o", "f_%d.png"],
                              cwd=folder, env={**os.environ, **environment}, capture_output=True, text=True,
                              timeout=PATIENCE)
         assert run.returncode == 1 and "display" in run.stderr, f"{run.returncode}: {run.stderr}"
 
 
 def case_same_picture_with_every_context(folder):
-    path = os.path.join(folder, "scene.json")
-    with open(path, "w") as file:
-        json.dump(POOL, file)
+    path = write_scene(folder, POOL)
     pictures = []
     for context in ["glfw", "egl"]:
         run = subprocess.run([PROGRAM, "render", path, "--frames", "3:4", "--size", "320x180", "--context", context,
