@@ -5,6 +5,7 @@
 #include <stdio.h>
 
 #define EDGE_COUNT 12
+#define WALL_COUNT 4
 
 bool render_background_resize(RenderPicture *picture, RenderError *error) {
   RenderBackground *background = &picture->background;
@@ -19,6 +20,7 @@ void render_background_destroy(RenderPicture *picture) {
   RenderBackground *background = &picture->background;
   gpu_program_destroy(&background->world_program);
   gpu_program_destroy(&background->obstacle_program);
+  gpu_program_destroy(&background->pane_program);
   gpu_program_destroy(&background->edge_program[0]);
   gpu_program_destroy(&background->edge_program[1]);
   gpu_texture_destroy(&background->colour);
@@ -88,6 +90,22 @@ bool render_background_draw(RenderPicture *picture, RenderError *error) {
          draw_edges(picture, &picture->background.target, false, error);
 }
 
-bool render_front_edges_draw(RenderPicture *picture, RenderError *error) {
-  return draw_edges(picture, &picture->target, true, error);
+static bool draw_panes(RenderPicture *picture, RenderError *error) {
+  if (picture->block.container_min[3] == 0) return true;
+  GpuProgram *program = &picture->background.pane_program;
+  const GpuProgramDesc desc = {.label = "glass", .file = "panes.glsl", .defines = picture->defines};
+  if (!gpu_program_prepare(program, &desc, error)) return false;
+  gpu_draw(picture->gpu, &(GpuDraw){
+                             .program = program,
+                             .target = &picture->target,
+                             .vertices = 6 * WALL_COUNT,
+                             .depth = GPU_DEPTH_OFF,
+                             .blend = GPU_BLEND_OVER,
+                             .in = {.frame = &picture->uniforms},
+                         });
+  return true;
+}
+
+bool render_front_glass_draw(RenderPicture *picture, RenderError *error) {
+  return draw_panes(picture, error) && draw_edges(picture, &picture->target, true, error);
 }

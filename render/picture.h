@@ -62,7 +62,7 @@ typedef struct RenderSunMap {
 
 /// Sky, floor, obstacles and the back edges of the container.
 typedef struct RenderBackground {
-  GpuProgram world_program, obstacle_program;
+  GpuProgram world_program, obstacle_program, pane_program;
   GpuProgram edge_program[2];  // back, front
   GpuTexture colour;           // rgb: linear light; a: depth along the view axis (m), 0 for the sky
   GpuTarget target;
@@ -105,8 +105,8 @@ bool render_sun_map_draw(RenderPicture *picture, RenderError *error);
 bool render_background_resize(RenderPicture *picture, RenderError *error);
 void render_background_destroy(RenderPicture *picture);
 bool render_background_draw(RenderPicture *picture, RenderError *error);
-/// The edges of the container that lie between the eye and the water, over the finished picture.
-bool render_front_edges_draw(RenderPicture *picture, RenderError *error);
+/// Glass and edges of the container that lie between the eye and the water, over the finished picture.
+bool render_front_glass_draw(RenderPicture *picture, RenderError *error);
 
 /// How a layer is turned into something to look at.
 typedef enum RenderMap {

@@ -163,7 +163,7 @@ static bool draw_passes(Render *render, const RenderView *view, void *state, Ren
   ok = ok && render->style->draw(state, picture, error);
 
   gpu_pass_begin(gpu, "compose");
-  ok = ok && render_front_edges_draw(picture, error) && finish(render, state, error);
+  ok = ok && render_front_glass_draw(picture, error) && finish(render, state, error);
   gpu_pass_end(gpu);
   return ok;
 }

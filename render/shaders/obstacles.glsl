@@ -112,7 +112,7 @@ void main() {
   vec3 p = eye.xyz + ray * t.x;
   float facing = max(dot(normal, sun_direction.xyz), 0.0);
   SunLight sunlit = sun_light(p);
-  vec3 light = sun_colour.rgb * facing / PI * sunlit.direct + sky_average(normal) * sunlit.diffuse;
+  vec3 light = sun_colour.rgb * facing / PI * sunlit.direct * sunlit.focus + sky_average(normal) * sunlit.diffuse;
   result = vec4(bodies[index].colour.rgb * light, t.x);
   gl_FragDepth = depth_of(t.x);
 }

@@ -51,7 +51,7 @@ void main() {
   vec3 extinction = absorption.rgb + SCATTER;
   vec3 through = exp(-extinction * metres);
   float bead = 0.85 + 0.15 * dot(s.xyz, sun_direction.xyz);
-  vec3 source = sun_colour.rgb * sunlit.direct * bead * 0.16 + sky_average(n) * sunlit.diffuse * 0.9;
+  vec3 source = sun_colour.rgb * sunlit.direct * mix(1.0, sunlit.focus, 0.25) * bead * 0.18 + sky_average(n) * sunlit.diffuse * 0.9;
   vec3 light = behind(n, metres, s.w) * through + SCATTER / extinction * (1.0 - through) * source;
   light *= colour.rgb;
 

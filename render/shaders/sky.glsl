@@ -8,7 +8,7 @@ vec3 sky_average(vec3 normal) {
   return mix(sky_horizon.rgb, sky_zenith.rgb, 0.25 + 0.25 * normal.y);
 }
 #else
-const vec3 SKY_HORIZON = vec3(0.66, 0.75, 0.83);
+const vec3 SKY_HORIZON = vec3(0.78, 0.83, 0.87);
 const vec3 SKY_MIDDLE = vec3(0.24, 0.45, 0.74);
 const vec3 SKY_ZENITH = vec3(0.07, 0.20, 0.50);
 
@@ -23,6 +23,6 @@ vec3 sky(vec3 d) {
 }
 
 vec3 sky_average(vec3 normal) {
-  return mix(vec3(0.26, 0.26, 0.25), vec3(0.30, 0.39, 0.50), 0.5 + 0.5 * normal.y);
+  return mix(vec3(0.20, 0.20, 0.19), vec3(0.22, 0.29, 0.38), 0.5 + 0.5 * normal.y);
 }
 #endif

@@ -8,7 +8,7 @@ layout(binding = 7) uniform sampler2D sun_solid;  // height of the nearest obsta
 #endif
 
 // Scattering coefficient of the water, 1/m; chosen for the look of a clear pool.
-const vec3 SCATTER = vec3(0.25, 0.50, 0.52);
+const vec3 SCATTER = vec3(0.14, 0.34, 0.36);
 
 vec2 sun_place(vec3 p) {
   return vec2(dot(p, sun_u.xyz) + sun_u.w, dot(p, sun_v.xyz) + sun_v.w);
@@ -38,21 +38,21 @@ float sun_past_solids(vec3 p) {
 }
 
 struct SunLight {
-  vec3 direct;          // share of the sunlight that reaches the point
+  vec3 direct;          // share of the sunlight that reaches the point, without focus
+  float focus;          // bundling of that light by the water's bumps
   vec3 diffuse;         // the same of the sky's light
   float path;           // metres of water between the point and the sun
 };
 
 // Light at a point in, below or beside the water. Besides absorbing, water scatters: its shadow is darker than its tint.
 SunLight sun_light(vec3 p) {
-  SunLight light = SunLight(vec3(1.0), vec3(1.0), 0.0);
+  SunLight light = SunLight(vec3(1.0), 1.0, vec3(1.0), 0.0);
 #ifdef WATER_SHADOW
   vec4 water = textureLod(sun_water, sun_place(p), 0.0);
   if (water.z > 0.0 && water.x > 0.0) {
     light.path = clamp(water.y - dot(p, sun_direction.xyz), 0.0, water.x);
-    float deep = light.path / water.x;
-    float focus = textureLod(sun_relief, sun_place(p), 0.0).w;
-    light.direct = exp(-(absorption.rgb + SCATTER) * light.path) * mix(1.0, focus, deep);
+    light.direct = exp(-(absorption.rgb + SCATTER) * light.path);
+    light.focus = mix(1.0, textureLod(sun_relief, sun_place(p), 0.0).w, light.path / water.x);
     light.diffuse = exp(-absorption.rgb * 0.7 * light.path);
   }
 #endif
