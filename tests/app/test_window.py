@@ -188,25 +188,30 @@ def read_png(path):
 
 # ---- Cases ------------------------------------------------------------------------------------------------------------
 
-def largest_energy(folder, hand, frames=100):
-    """Largest kinetic energy (J) of a settled pool from frame 40 on, while `hand` acts."""
+def largest_energy(folder, hand, frames=110):
+    """Largest kinetic energy (J) of a settled pool from frame 60 on, while `hand` acts."""
     stats = os.path.join(folder, "stats.jsonl")
     with Window(folder, "--frames", frames, "--stats", stats) as window:
-        window.wait_frame(40)
+        window.wait_frame(60)
         hand(window)
         window.ends_with(0)
     lines = [json.loads(line) for line in open(stats)]
     assert [line["frame"] for line in lines] == list(range(frames)), "not every frame once"
-    return max(line["energy"]["kinetic"] for line in lines if line["frame"] > 40)
+    return max(line["energy"]["kinetic"] for line in lines if line["frame"] >= 60)
 
 
-def stroke(window, button, *keys):
+def stroke(window, button, *keys, frames=0):
+    """Drag from left to right, again and again until so many frames have passed."""
+    end = window.frame() + frames
     for key in keys:
         xdotool("keydown", key)
     xdotool("mousemove", "--window", window.id, 160, 190, "mousedown", button)
-    for x in range(160, 321, 16):
-        xdotool("mousemove", "--window", window.id, x, 190)
-        time.sleep(0.02)
+    while True:
+        for x in range(160, 321, 16):
+            xdotool("mousemove", "--window", window.id, x, 190)
+            time.sleep(0.02)
+        if window.frame() >= end:
+            break
     xdotool("mouseup", button)
     for key in keys:
         xdotool("keyup", key)
@@ -214,21 +219,21 @@ def stroke(window, button, *keys):
 
 def hold(window, key):
     xdotool("keydown", key)
-    time.sleep(0.5)
+    window.wait_frame(window.frame() + 24)
     xdotool("keyup", key)
 
 
 def case_water_answers(folder):
     calm = largest_energy(folder, lambda window: None)
-    looked = largest_energy(folder, lambda window: stroke(window, 1))
-    assert looked < 2 * calm, f"looking around moved the water: {looked} J against {calm} J"
-    for name, hand in [("push", lambda window: stroke(window, 3)),
-                       ("push with one button", lambda window: stroke(window, 1, "ctrl")),
-                       ("pull", lambda window: stroke(window, 3, "shift")),
+    looked = largest_energy(folder, lambda window: stroke(window, 1, frames=12))
+    assert looked == calm, f"looking around moved the water: {looked} J against {calm} J"
+    for name, hand in [("push", lambda window: stroke(window, 3, frames=12)),
+                       ("push with one button", lambda window: stroke(window, 1, "ctrl", frames=12)),
+                       ("pull", lambda window: stroke(window, 3, "shift", frames=12)),
                        ("lean", lambda window: hold(window, "Right"))]:
         moved = largest_energy(folder, hand)
         print(f"  {name}: {moved:.4g} J against {calm:.4g} J")
-        assert moved > 10 * calm, f"{name}: the water did not answer: {moved} J against {calm} J"
+        assert moved > 8 * calm, f"{name}: the water did not answer: {moved} J against {calm} J"
 
 
 def case_pause_step_reset(folder):
