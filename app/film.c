@@ -72,39 +72,16 @@ static int start_ffmpeg(Film *film, const FilmDef *def, int input) {
   snprintf(size, sizeof size, "%dx%d", def->width, def->height);
   snprintf(rate, sizeof rate, "%.10g", def->fps);
   snprintf(url, sizeof url, "file:%s", output_part(film->output)); // a name with a colon is a name, not a protocol
-  // Even sizes are what 4:2:0 needs; the matrix is said, so that players do not guess the colours.
-  char *const arguments[] = {"ffmpeg",
-                             "-hide_banner",
-                             "-loglevel",
-                             "error",
-                             "-y",
-                             "-f",
-                             "rawvideo",
-                             "-pixel_format",
-                             "rgb24",
-                             "-video_size",
-                             size,
-                             "-framerate",
-                             rate,
-                             "-i",
-                             "pipe:0",
-                             "-an",
-                             "-vf",
-                             "pad=ceil(iw/2)*2:ceil(ih/2)*2,scale=out_color_matrix=bt709:out_range=tv,format=yuv420p",
-                             "-colorspace",
-                             "bt709",
-                             "-color_primaries",
-                             "bt709",
-                             "-color_trc",
-                             "bt709",
-                             "-color_range",
-                             "tv",
-                             "-movflags",
-                             "+faststart",
-                             "-f",
-                             (char *)film_format(def->path),
-                             url,
-                             NULL};
+  // Without -xerror it tells of a full disk and ends as if all were well. Even sizes are what 4:2:0 needs; the matrix is
+  // said, so that players do not guess the colours.
+  // clang-format off
+  char *const arguments[] = {
+      "ffmpeg", "-hide_banner", "-loglevel", "error", "-xerror", "-y",
+      "-f", "rawvideo", "-pixel_format", "rgb24", "-video_size", size, "-framerate", rate, "-i", "pipe:0", "-an",
+      "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2,scale=out_color_matrix=bt709:out_range=tv,format=yuv420p",
+      "-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709", "-color_range", "tv",
+      "-movflags", "+faststart", "-f", (char *)film_format(film->path), url, NULL};
+  // clang-format on
   return spawn(film, arguments, input);
 }
 
@@ -171,21 +148,17 @@ static int wait_for_ffmpeg(Film *film) {
   return status;
 }
 
-// The last line that ffmpeg said, usually the cause.
-static void last_words(const Film *film, char text[256]) {
+// The first line that ffmpeg said: the cause; what follows are its consequences.
+static void first_words(const Film *film, char text[256]) {
   text[0] = '\0';
-  char line[256];
   if (!film->words) return;
   rewind(film->words);
-  while (fgets(line, sizeof line, film->words)) {
-    line[strcspn(line, "\r\n")] = '\0';
-    if (line[0]) memcpy(text, line, sizeof line);
-  }
+  while (!text[0] && fgets(text, 256, film->words)) text[strcspn(text, "\r\n")] = '\0';
 }
 
 static bool ffmpeg_failed(const Film *film, int status, AppError *error) {
   char words[256];
-  last_words(film, words);
+  first_words(film, words);
   if (words[0]) return app_fail(error, APP_FAILED, "%s: ffmpeg failed: %s", film->path, words);
   if (WIFSIGNALED(status))
     return app_fail(error, APP_FAILED, "%s: ffmpeg was ended by signal %d", film->path, WTERMSIG(status));

@@ -145,11 +145,13 @@ static bool make_scene(Source *source, const ParticleFile *file, AppError *error
     memcpy(min, file->container.min, sizeof min);
     memcpy(max, file->container.max, sizeof max);
   }
-  char text[512];
+  // Without a container the floor lies still under the first water, instead of under that of each frame.
+  char text[512], floor[64] = "null";
+  if (!file->has_container) snprintf(floor, sizeof floor, "%.9g", min[1]);
   int length = snprintf(text, sizeof text,
                         "{\"version\": 1, \"container\": {\"min\": [%.9g, %.9g, %.9g], \"max\": [%.9g, %.9g, %.9g], "
-                        "\"visible\": %s}, \"environment\": {\"floor_level\": %.9g}}",
-                        min[0], min[1], min[2], max[0], max[1], max[2], file->has_container ? "true" : "false", min[1]);
+                        "\"visible\": %s}, \"environment\": {\"floor_level\": %s}}",
+                        min[0], min[1], min[2], max[0], max[1], max[2], file->has_container ? "true" : "false", floor);
   if (!scene_load_text(&source->scene, options->source, text, (size_t)length, options->sets, options->set_count, error))
     return false;
   source->has_scene = true;

@@ -38,9 +38,9 @@ void folder_remove(const char *folder) {
 }
 
 const char *in(const char *folder, const char *name) {
-  static char paths[16][1024];
+  static char paths[64][1024];
   static int next;
-  char *path = paths[next++ % 16];
+  char *path = paths[next++ % 64];
   snprintf(path, sizeof *paths, "%s/%s", folder, name);
   return path;
 }
@@ -109,6 +109,11 @@ static void child(const LidoRun *run, const char *const *arguments, int out, int
   _exit(127);
 }
 
+static bool is_there(const char *path) {
+  int entries = folder_count(path); // −1 for a file
+  return entries < 0 ? file_exists(path) : entries > 0;
+}
+
 static void pause_ms(long ms) {
   nanosleep(&(struct timespec){ms / 1000, ms % 1000 * 1000000}, NULL);
 }
@@ -123,7 +128,7 @@ static int wait_for(LidoRun *run, pid_t process, int reader) {
   int status;
   bool interrupted = false;
   for (int waited = 0; waitpid(process, &status, WNOHANG) == 0; waited++) {
-    if (run->interrupt_when && !interrupted && file_exists(run->interrupt_when)) {
+    if (run->interrupt_when && !interrupted && is_there(run->interrupt_when)) {
       kill(process, SIGINT);
       interrupted = true;
     }

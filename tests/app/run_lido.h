@@ -28,7 +28,7 @@ void lido_run(LidoRun *run, const char *const *arguments);
 /// A fresh empty folder; at the end remove it with everything in it.
 void folder_make(char folder[256]);
 void folder_remove(const char *folder);
-/// "folder/name" in one of some static buffers.
+/// "folder/name" in one of 64 static buffers, which are used in turn.
 const char *in(const char *folder, const char *name);
 /// Number of entries in a folder, hidden ones included; -1 when it is not there.
 int folder_count(const char *folder);

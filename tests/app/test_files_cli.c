@@ -105,9 +105,9 @@ static void test_cut_short(void **state) {
   (void)state;
   static const char *const endings[] = {"vtk", "ply"};
   for (int i = 0; i < 2; i++) {
-    char name[32];
+    char name[32], path[512];
     snprintf(name, sizeof name, "p.%s", endings[i]);
-    const char *path = in(folder, name);
+    snprintf(path, sizeof path, "%s", in(folder, name));
     LidoRun run = {0};
     LIDO(&run, "simulate", scene, "--frames", "1", "-q", "-o", path);
     assert_int_equal(run.code, 0);
