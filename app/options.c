@@ -11,7 +11,7 @@
 #include "app/commands.h"
 #include "app/scene_table.h"
 
-// ---- Readers of values: each fills its part of the options, false and *cause when it cannot --------------------------------
+// ---- Readers of values: each fills its part of the options, false and *cause when it cannot -------------------------
 
 typedef bool OptionReader(Options *options, const char *value, char *cause, size_t size);
 
@@ -153,11 +153,11 @@ static bool read_layer(Options *options, const char *value, char *cause, size_t 
   return *value || because(cause, size, "must not be empty (lido list names the layers)");
 }
 
-#define SWITCH_READER(name) \
-  static bool read_##name(Options *options, const char *value, char *cause, size_t size) { \
-    (void)value, (void)cause, (void)size; \
-    options->name = true; \
-    return true; \
+#define SWITCH_READER(name)                                                                                            \
+  static bool read_##name(Options *options, const char *value, char *cause, size_t size) {                             \
+    (void)value, (void)cause, (void)size;                                                                              \
+    options->name = true;                                                                                              \
+    return true;                                                                                                       \
   }
 SWITCH_READER(quiet)
 SWITCH_READER(json)
@@ -166,7 +166,7 @@ SWITCH_READER(reference)
 SWITCH_READER(help)
 SWITCH_READER(version)
 
-// ---- The table -------------------------------------------------------------------------------------------------------
+// ---- The table ------------------------------------------------------------------------------------------------------
 
 enum {
   WINDOW = 1 << COMMAND_window,
@@ -182,44 +182,46 @@ enum {
 
 typedef struct Option {
   const char *name;
-  char letter;          // 0: none
-  const char *value;    // what the help calls it; NULL: a switch
-  int commands;         // that take it
+  char letter;       // 0: none
+  const char *value; // what the help calls it; NULL: a switch
+  int commands;      // that take it
   OptionReader *read;
   const char *help;
 } Option;
 
 // clang-format off
 static const Option option_table[] = {
-  {"output",    'o', "PATTERN",   RENDER | SIMULATE, read_output,    "where the frames go, like out/f_%05d.png"},
-  {"style",     0,   "NAME",      DRAWS | CHECK,     read_style,     "how the water is drawn (lido list names the styles)"},
-  {"size",      0,   "WxH",       DRAWS,             read_size,      "pixels of a picture, default 1280x720"},
-  {"frames",    0,   "N|A:B",     RUNS,              read_frames,    "the first N frames, or those from A up to but not with B"},
-  {"fps",       0,   "F",         RUNS,              read_fps,       "frames per simulated second, default 60"},
-  {"context",   0,   "NAME",      DRAWS,             read_context,   "auto, glfw, egl or osmesa: where OpenGL comes from"},
-  {"threads",   0,   "N",         RUNS,              read_threads,   "default: as many as there are cores"},
-  {"seed",      0,   "N",         RUNS | CHECK,      read_seed,      "of every random choice, default: the scene's"},
-  {"set",       0,   "KEY=VALUE", RUNS | CHECK,      read_set,       "change a value of the scene, like simulation.cfl=0.3"},
-  {"camera",    0,   "X,Y,Z,X,Y,Z", DRAWS,           read_camera,    "where the eye is and what it looks at, in m"},
-  {"layer",     0,   "NAME",      WINDOW | RENDER,   read_layer,     "an intermediate of the style instead of the picture"},
-  {"stats",     0,   "FILE",      RUNS & ~BENCH,     read_stats,     "one line of JSON per frame: energy, errors, times"},
-  {"json",      0,   NULL,        BENCH | LIST,      read_json,      "print JSON instead of a table"},
-  {"schema",    0,   NULL,        CHECK,             read_schema,    "print the JSON schema of scenes (needs no SCENE)"},
-  {"reference", 0,   NULL,        CHECK,             read_reference, "print the table of all keys (needs no SCENE)"},
-  {"quiet",     'q', NULL,        ALL,               read_quiet,     "no progress, only errors"},
-  {"help",      'h', NULL,        ALL,               read_help,      "print this"},
-  {"version",   0,   NULL,        ALL,               read_version,   "print the version"},
+  {"output",    'o', "PATTERN",     RENDER | SIMULATE, read_output,    "where the frames go, like out/f_%05d.png"},
+  {"style",     0,   "NAME",        DRAWS | CHECK,     read_style,     "how the water is drawn (see lido list)"},
+  {"size",      0,   "WxH",         DRAWS,             read_size,      "pixels of a picture, default 1280x720"},
+  {"frames",    0,   "N|A:B",       RUNS,              read_frames,    "the first N frames, or A up to B, without B"},
+  {"fps",       0,   "F",           RUNS,              read_fps,       "frames per simulated second, default 60"},
+  {"context",   0,   "NAME",        DRAWS,             read_context,   "where OpenGL is from: auto, glfw, egl, osmesa"},
+  {"threads",   0,   "N",           RUNS,              read_threads,   "default: as many as there are cores"},
+  {"seed",      0,   "N",           RUNS | CHECK,      read_seed,      "of every random choice, default: the scene's"},
+  {"set",       0,   "KEY=VALUE",   RUNS | CHECK,      read_set,       "change the scene, like simulation.cfl=0.3"},
+  {"camera",    0,   "X,Y,Z,X,Y,Z", DRAWS,             read_camera,    "where the eye is and what it looks at, in m"},
+  {"layer",     0,   "NAME",        WINDOW | RENDER,   read_layer,     "an intermediate of the style (see lido list)"},
+  {"stats",     0,   "FILE",        RUNS & ~BENCH,     read_stats,     "a line of JSON a frame: energy, errors, times"},
+  {"json",      0,   NULL,          BENCH | LIST,      read_json,      "print JSON instead of a table"},
+  {"schema",    0,   NULL,          CHECK,             read_schema,    "print the JSON schema of scenes instead"},
+  {"reference", 0,   NULL,          CHECK,             read_reference, "print the table of all keys instead"},
+  {"quiet",     'q', NULL,          ALL,               read_quiet,     "no progress, only errors"},
+  {"help",      'h', NULL,          ALL,               read_help,      "print this"},
+  {"version",   0,   NULL,          ALL,               read_version,   "print the version"},
 };
 // clang-format on
 enum { OPTION_COUNT = sizeof option_table / sizeof *option_table };
 
-static const struct { const char *name, *arguments, *summary; } command_table[] = {
+static const struct {
+  const char *name, *arguments, *summary;
+} command_table[] = {
 #define COMMAND_ROW(name, arguments, summary) {#name, arguments, summary},
     COMMANDS(COMMAND_ROW)
 #undef COMMAND_ROW
 };
 
-// ---- Parsing ---------------------------------------------------------------------------------------------------------
+// ---- Parsing --------------------------------------------------------------------------------------------------------
 
 typedef struct Parser {
   Options *options;
@@ -228,7 +230,7 @@ typedef struct Parser {
   char **argv;
   const Option *given[OPTION_COUNT]; // options that were given, for the check against the command
   int given_count;
-  const char *words[2];              // what is no option: command and source, or source
+  const char *words[2]; // what is no option: command and source, or source
   int word_count;
 } Parser;
 
@@ -307,7 +309,7 @@ static bool take_arguments(Parser *parser) {
   return true;
 }
 
-// ---- What the whole must be ------------------------------------------------------------------------------------------
+// ---- What the whole must be -----------------------------------------------------------------------------------------
 
 /// The first word is a command, or the scene for the window.
 static bool find_command(Parser *parser) {
@@ -383,7 +385,7 @@ void options_free(Options *options) {
   options->sets = NULL;
 }
 
-// ---- Help ------------------------------------------------------------------------------------------------------------
+// ---- Help -----------------------------------------------------------------------------------------------------------
 
 static void print_option(FILE *file, const Option *option) {
   char left[40], letter[8] = "    ";
@@ -398,8 +400,7 @@ static void print_patterns(FILE *file, int command) {
     fprintf(file, "\nSOURCE is a scene, or particle files such as 'run/p_%%05d.vtk' (.vtk or .ply).\n"
                   "PATTERN is 'out/f_%%05d.png' for pictures, 'film.mp4' for a film (needs ffmpeg),\n"
                   "or '-' for raw RGB24 frames on the standard output.\n");
-  if (command == COMMAND_simulate)
-    fprintf(file, "\nPATTERN is 'out/p_%%05d.vtk' or 'out/p_%%05d.ply'.\n");
+  if (command == COMMAND_simulate) fprintf(file, "\nPATTERN is 'out/p_%%05d.vtk' or 'out/p_%%05d.ply'.\n");
 }
 
 static void print_command_help(FILE *file, int command) {

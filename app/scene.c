@@ -10,7 +10,7 @@
 
 #include "app/scene_parse.h"
 
-// ---- Reading the file ------------------------------------------------------------------------------------------------
+// ---- Reading the file -----------------------------------------------------------------------------------------------
 
 static bool too_large(const char *path, AppError *error) {
   return app_fail(error, APP_BAD_INPUT, "%s: larger than %d MiB, the most that a scene may have", path,
@@ -60,7 +60,7 @@ static char *read_file(const char *path, size_t *size, AppError *error) {
   return NULL;
 }
 
-// ---- Loading ---------------------------------------------------------------------------------------------------------
+// ---- Loading --------------------------------------------------------------------------------------------------------
 
 static bool load_tree(const SceneSource *source, cJSON *root, Scene *scene) {
   for (int i = 0; cJSON_IsObject(root) && i < source->set_count; i++)
@@ -110,7 +110,7 @@ void scene_free(Scene *scene) {
   *scene = (Scene){0};
 }
 
-// ---- Use -------------------------------------------------------------------------------------------------------------
+// ---- Use ------------------------------------------------------------------------------------------------------------
 
 SimWorldDef scene_world_def(const Scene *scene) {
   const SceneSimulation *simulation = &scene->simulation;

@@ -1,7 +1,8 @@
 // A scene: what a JSON file in configs/ says, checked and with every default filled in.
 //
-// The structs are made from the field table in scene_fields.h, member names are the JSON keys: scene.simulation.duration,
-// scene.container.min, scene.fluid[i].block.velocity, scene.events[i].push.origin … Read docs/scene.md for their meaning.
+// The structs are made from the field table in scene_fields.h, and member names are the JSON keys:
+// scene.simulation.duration, scene.container.min, scene.fluid[i].block.velocity, scene.events[i].push.origin …
+// docs/scene.md says what they mean.
 //
 //   Scene scene;
 //   if (!scene_load(&scene, "dam_break", NULL, 0, &error)) return false;
@@ -25,7 +26,7 @@
 /// The scene that opens when none is named.
 #define SCENE_DEFAULT "dam_break"
 
-// ---- Structs, from the table -----------------------------------------------------------------------------------------
+// ---- Structs, from the table ----------------------------------------------------------------------------------------
 
 #define SCENE_MEMBER_NUMBER(key) float key;
 #define SCENE_MEMBER_REAL(key) double key;
@@ -66,7 +67,7 @@ typedef struct Scene {
   SimObstacle *solids;  // (obstacles_count)
 } Scene;
 
-// ---- Loading ---------------------------------------------------------------------------------------------------------
+// ---- Loading --------------------------------------------------------------------------------------------------------
 
 /// Read the scene file `path` (found as by scene_find), change it by the "key.path=value" strings `sets`, check it and
 /// fill in defaults. Events come out sorted by time, the directions of pushes as unit vectors, the camera with numbers.
@@ -86,7 +87,7 @@ bool scene_find(const char *name, char *path, size_t size);
 /// The folder of shipped scenes (relative to the program, installed or in its build folder). false: there is none.
 bool scene_folder(char *path, size_t size);
 
-// ---- Use -------------------------------------------------------------------------------------------------------------
+// ---- Use ------------------------------------------------------------------------------------------------------------
 
 /// Pointers in it point into the scene.
 SimWorldDef scene_world_def(const Scene *scene);
@@ -96,7 +97,7 @@ RenderView scene_view(const Scene *scene);
 /// Number of particles that the fluid blocks hold before those in obstacles or outside the container are left out.
 int64_t scene_particle_count(const Scene *scene);
 
-// ---- Text made from the table: each is to be freed, NULL when memory runs out --------------------------------------------
+// ---- Text made from the table: each is to be freed, NULL when memory runs out ---------------------------------------
 
 char *scene_print(const Scene *scene);  ///< JSON with every value; loads again to the same scene
 char *scene_schema(void);               ///< JSON Schema (draft 7) of scene files: configs/scene.schema.json

@@ -47,7 +47,7 @@ static bool fail_at(const Check *check, const char *keys, const char *format, ..
   return scene_fail(check->source, &chain[level], "%s", message);
 }
 
-// ---- Boxes and particles ---------------------------------------------------------------------------------------------
+// ---- Boxes and particles --------------------------------------------------------------------------------------------
 
 static bool check_box(const Check *check, const char *keys, const float min[3], const float max[3]) {
   for (int i = 0; i < 3; i++)
@@ -132,7 +132,7 @@ static bool check_container(const Check *check) {
   return true;
 }
 
-// ---- Events ----------------------------------------------------------------------------------------------------------
+// ---- Events ---------------------------------------------------------------------------------------------------------
 
 static float distance(const float a[3], const float b[3]) {
   return sqrtf((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2]));
@@ -151,13 +151,17 @@ static bool complete_event(const Check *check, int index) {
   char keys[40];
   snprintf(keys, sizeof keys, "events.%d", index);
   switch (event->type) {
-  case EVENT_PUSH: make_unit(event->push.direction); return true;
-  case EVENT_POUR: return check_block(check, keys, event->pour.min, event->pour.max);
+  case EVENT_PUSH:
+    make_unit(event->push.direction);
+    return true;
+  case EVENT_POUR:
+    return check_block(check, keys, event->pour.min, event->pour.max);
   case EVENT_CAMERA:
     if (isnan(event->camera.fov)) event->camera.fov = check->scene->camera.fov;
     return distance(event->camera.eye, event->camera.target) > 0 ||
            fail_at(check, keys, "eye and target must not be the same point");
-  default: return true;
+  default:
+    return true;
   }
 }
 
@@ -191,7 +195,7 @@ static bool sort_events(const Check *check) {
   return true;
 }
 
-// ---- Camera ----------------------------------------------------------------------------------------------------------
+// ---- Camera ---------------------------------------------------------------------------------------------------------
 
 /// From the front and slightly above, far enough that a 16:9 picture holds the whole container.
 static void place_camera(Scene *scene) {
@@ -202,10 +206,10 @@ static void place_camera(Scene *scene) {
     size[i] = (double)container->max[i] - container->min[i];
   }
   double tangent = tan((double)scene->camera.fov * 3.14159265358979 / 360);
-  double across = 0.5 * size[0] / (tangent * 16 / 9), up = 0.5 * (size[1] + 0.4 * size[2]) / tangent;
+  double across = 0.5 * size[0] / (tangent * 16 / 9), up = 0.5 * (size[1] + 0.2 * size[2]) / tangent;
   double far = 0.5 * size[2] + 1.1 * fmax(across, up);
   double target[3] = {centre[0], container->min[1] + 0.3 * size[1], centre[2]};
-  double eye[3] = {centre[0] - 0.12 * far, target[1] + 0.45 * far, centre[2] + 0.9 * far};
+  double eye[3] = {centre[0] - 0.15 * far, target[1] + 0.22 * far, centre[2] + 0.96 * far};
   // To the millimetre: these numbers are printed.
   for (int i = 0; i < 3; i++) {
     if (isnan(scene->camera.eye[i])) scene->camera.eye[i] = (float)(round(1000 * eye[i]) / 1000);
@@ -213,7 +217,7 @@ static void place_camera(Scene *scene) {
   }
 }
 
-// ---- What the simulation reads ---------------------------------------------------------------------------------------
+// ---- What the simulation reads --------------------------------------------------------------------------------------
 
 /// Unit quaternion (x, y, z, w) of a turn about x, then y, then z, in degrees.
 static void quaternion_from_degrees(const float degrees[3], float q[4]) {
@@ -241,7 +245,9 @@ static SimBlockDef make_block(const SceneBlock *block) {
 static SimObstacle make_solid(const SceneObstacle *obstacle) {
   SimObstacle solid = {.shape = (SimShape)obstacle->type};
   switch (solid.shape) {
-  case SIM_BOX: memcpy(solid.size, obstacle->box.size, sizeof solid.size); break;
+  case SIM_BOX:
+    memcpy(solid.size, obstacle->box.size, sizeof solid.size);
+    break;
   case SIM_SPHERE:
     for (int i = 0; i < 3; i++) solid.size[i] = 2 * obstacle->sphere.radius;
     break;

@@ -14,7 +14,7 @@
 // SEED      uint64_t                      whole number                                     interval
 // SWITCH    bool                          true, false                                      –
 // TEXT      char[SCENE_TEXT_SIZE]         string                                           –
-// CHOICE    int32_t, place in the range   string                                           "a | b | (c)"; (c) comes later
+// CHOICE    int32_t, place in the range   string                                           "a | b | (c)"; (c): later
 // STYLE     char[SCENE_TEXT_SIZE]         string, a style of the renderer                  –
 // VECTOR    float[3]                      three numbers                                    interval of each
 // DIRECTION float[3], kept as given       three numbers, not all zero                      interval of each
@@ -32,8 +32,10 @@
 
 // clang-format off
 #define SCENE_TOP(F, O, L, V, S) \
-  F(S, INTEGER,   version,         "",         "[1, 1]",           SCENE_REQUIRED,   "Version of this format.") \
-  F(S, TEXT,      name,            "",         "",                 "\"\"",           "What people call the scene.") \
+  F(S, INTEGER,   version,         "",         "[1, 1]",           SCENE_REQUIRED, \
+    "Version of this format.") \
+  F(S, TEXT,      name,            "",         "",                 "\"\"", \
+    "What people call the scene.") \
   O(S, SceneSimulation,  simulation,        "How the water moves.") \
   O(S, SceneContainer,   container,         "What holds the water.") \
   L(S, SceneFluid,       fluid,      4096,  "The water at the start; items must not overlap.") \
@@ -45,93 +47,149 @@
   L(S, SceneEvent,       events,     65536, "A timeline of what a hand would do; sorted by time when read.")
 
 #define SCENE_SIMULATION(F, O, L, V, S) \
-  F(S, CHOICE,    solver,          "",         "pbf | (sph)",      "\"pbf\"",        "Method: pbf, position based fluids.") \
-  F(S, NUMBER,    particle_radius, "m",        "[0.0001, 1]",      "0.0175",         "Half the spacing of the particles at rest.") \
-  F(S, NUMBER,    rest_density,    "kg/m³",    "[1, 100000]",      "1000",           "Density of the liquid.") \
-  F(S, NUMBER,    support,         "spacings", "[1.5, 3]",         "2",              "Support radius of the kernels.") \
-  F(S, VECTOR,    gravity,         "m/s²",     "[-1000, 1000]",    "[0, -9.81, 0]",  "Gravity at the start.") \
-  F(S, NUMBER,    time_step,       "s",        "[0, 0.1]",         "0",              "Longest substep; 0: adaptive, from cfl.") \
-  F(S, NUMBER,    cfl,             "spacings", "[0.05, 2]",        "0.4",            "Adaptive step: how far the fastest particle may move in one substep.") \
-  F(S, INTEGER,   iterations,      "",         "[1, 100]",         "4",              "Density iterations a substep.") \
-  F(S, NUMBER,    viscosity,       "",         "[0, 0.5]",         "0.01",           "XSPH factor: how much neighbours share their velocity.") \
-  F(S, NUMBER,    relaxation,      "",         "[0.001, 10]",      "0.1",            "Softness of the density constraint (PBF); larger is softer and steadier.") \
-  F(S, NUMBER,    tensile,         "",         "[0, 0.1]",         "0.003",          "Artificial pressure against clumping at the surface (PBF).") \
-  F(S, REAL,      duration,        "s",        "(0, 3600]",        "6",              "How long the scene lasts when it is recorded.") \
-  F(S, SEED,      seed,            "",         "[0, 9007199254740991]", "1",         "Of every random choice.") \
-  F(S, NUMBER,    jitter,          "spacings", "[0, 0.5]",         "0",              "Random displacement of the particles at the start.")
+  F(S, CHOICE,    solver,          "",         "pbf | (sph)",      "\"pbf\"", \
+    "Method: pbf, position based fluids.") \
+  F(S, NUMBER,    particle_radius, "m",        "[0.0001, 1]",      "0.0175", \
+    "Half the spacing of the particles at rest.") \
+  F(S, NUMBER,    rest_density,    "kg/m³",    "[1, 100000]",      "1000", \
+    "Density of the liquid.") \
+  F(S, NUMBER,    support,         "spacings", "[1.5, 3]",         "2", \
+    "Support radius of the kernels.") \
+  F(S, VECTOR,    gravity,         "m/s²",     "[-1000, 1000]",    "[0, -9.81, 0]", \
+    "Gravity at the start.") \
+  F(S, NUMBER,    time_step,       "s",        "[0, 0.1]",         "0", \
+    "Longest substep; 0: adaptive, from cfl.") \
+  F(S, NUMBER,    cfl,             "spacings", "[0.05, 2]",        "0.4", \
+    "Adaptive step: how far the fastest particle may move in one substep.") \
+  F(S, INTEGER,   iterations,      "",         "[1, 100]",         "4", \
+    "Density iterations a substep.") \
+  F(S, NUMBER,    viscosity,       "",         "[0, 0.5]",         "0.01", \
+    "XSPH factor: how much neighbours share their velocity.") \
+  F(S, NUMBER,    relaxation,      "",         "[0.001, 10]",      "0.1", \
+    "Softness of the density constraint (PBF); larger is softer and steadier.") \
+  F(S, NUMBER,    tensile,         "",         "[0, 0.1]",         "0.003", \
+    "Artificial pressure against clumping at the surface (PBF).") \
+  F(S, REAL,      duration,        "s",        "(0, 3600]",        "6", \
+    "How long the scene lasts when it is recorded.") \
+  F(S, SEED,      seed,            "",         "[0, 9007199254740991]", "1", \
+    "Of every random choice.") \
+  F(S, NUMBER,    jitter,          "spacings", "[0, 0.5]",         "0", \
+    "Random displacement of the particles at the start.")
 
 #define SCENE_CONTAINER(F, O, L, V, S) \
-  F(S, CHOICE,    shape,           "",         "box | (glass)",    "\"box\"",        "A box, open at the top for the eye but closed for particles.") \
-  F(S, VECTOR,    min,             "m",        "[-1000, 1000]",    "[0, 0, 0]",      "Lowest corner of the inner walls.") \
-  F(S, VECTOR,    max,             "m",        "[-1000, 1000]",    "[3, 1.6, 1]",    "Highest corner of the inner walls.") \
-  F(S, SWITCH,    visible,         "",         "",                 "true",           "Whether its edges are drawn.")
+  F(S, CHOICE,    shape,           "",         "box | (glass)",    "\"box\"", \
+    "A box, open at the top for the eye but closed for particles.") \
+  F(S, VECTOR,    min,             "m",        "[-1000, 1000]",    "[0, 0, 0]", \
+    "Lowest corner of the inner walls.") \
+  F(S, VECTOR,    max,             "m",        "[-1000, 1000]",    "[3, 1.6, 1]", \
+    "Highest corner of the inner walls.") \
+  F(S, SWITCH,    visible,         "",         "",                 "true", \
+    "Whether its edges are drawn.")
 
 #define SCENE_FLUID(F, O, L, V, S) \
-  F(S, CHOICE,    type,            "",         "block | (drop) | (emitter)", "\"block\"", "What kind of water this is.") \
+  F(S, CHOICE,    type,            "",         "block | (drop) | (emitter)", "\"block\"", \
+    "What kind of water this is.") \
   V(S, BLOCK,     block,           SceneBlock, "A box filled with particles.")
 
 #define SCENE_BLOCK(F, O, L, V, S) \
-  F(S, VECTOR,    min,             "m",        "[-1000, 1000]",    SCENE_REQUIRED,   "Lowest corner.") \
-  F(S, VECTOR,    max,             "m",        "[-1000, 1000]",    SCENE_REQUIRED,   "Highest corner.") \
-  F(S, VECTOR,    velocity,        "m/s",      "[-1000, 1000]",    "[0, 0, 0]",      "Velocity at the start.") \
-  F(S, VECTOR,    colour,          "linear",   "[0, 1]",           "[0, 0, 0]",      "Colour of the water; all 0: the natural one.")
+  F(S, VECTOR,    min,             "m",        "[-1000, 1000]",    SCENE_REQUIRED, \
+    "Lowest corner.") \
+  F(S, VECTOR,    max,             "m",        "[-1000, 1000]",    SCENE_REQUIRED, \
+    "Highest corner.") \
+  F(S, VECTOR,    velocity,        "m/s",      "[-1000, 1000]",    "[0, 0, 0]", \
+    "Velocity at the start.") \
+  F(S, VECTOR,    colour,          "linear",   "[0, 1]",           "[0, 0, 0]", \
+    "Colour of the water; all 0: the natural one.")
 
 #define SCENE_OBSTACLE(F, O, L, V, S) \
-  F(S, CHOICE,    type,            "",         "box | sphere | cylinder | (stairs) | (mesh)", SCENE_REQUIRED, "Shape of the body.") \
-  F(S, CHOICE,    motion,          "",         "static | (scripted) | (draggable) | (floating)", "\"static\"", "How it moves: static, not at all.") \
-  F(S, VECTOR,    position,        "m",        "[-1000, 1000]",    SCENE_REQUIRED,   "Its centre.") \
-  F(S, VECTOR,    rotation,        "degrees",  "[-360, 360]",      "[0, 0, 0]",      "Turned about x, then y, then z.") \
-  F(S, VECTOR,    colour,          "linear",   "[0, 1]",           "[0.75, 0.72, 0.68]", "Its colour.") \
+  F(S, CHOICE,    type,            "",         "box | sphere | cylinder | (stairs) | (mesh)", SCENE_REQUIRED, \
+    "Shape of the body.") \
+  F(S, CHOICE,    motion,          "",         "static | (scripted) | (draggable) | (floating)", "\"static\"", \
+    "How it moves: static, not at all.") \
+  F(S, VECTOR,    position,        "m",        "[-1000, 1000]",    SCENE_REQUIRED, \
+    "Its centre.") \
+  F(S, VECTOR,    rotation,        "degrees",  "[-360, 360]",      "[0, 0, 0]", \
+    "Turned about x, then y, then z.") \
+  F(S, VECTOR,    colour,          "linear",   "[0, 1]",           "[0.75, 0.72, 0.68]", \
+    "Its colour.") \
   V(S, BOX,       box,             SceneBox,      "A box.") \
   V(S, SPHERE,    sphere,          SceneSphere,   "A ball.") \
   V(S, CYLINDER,  cylinder,        SceneCylinder, "A cylinder, upright before it is turned.")
 
 #define SCENE_BOX(F, O, L, V, S) \
-  F(S, VECTOR,    size,            "m",        "(0, 1000]",        SCENE_REQUIRED,   "Full edge lengths.")
+  F(S, VECTOR,    size,            "m",        "(0, 1000]",        SCENE_REQUIRED, \
+    "Full edge lengths.")
 
 #define SCENE_SPHERE(F, O, L, V, S) \
-  F(S, NUMBER,    radius,          "m",        "(0, 1000]",        SCENE_REQUIRED,   "Its radius.")
+  F(S, NUMBER,    radius,          "m",        "(0, 1000]",        SCENE_REQUIRED, \
+    "Its radius.")
 
 #define SCENE_CYLINDER(F, O, L, V, S) \
-  F(S, NUMBER,    radius,          "m",        "(0, 1000]",        SCENE_REQUIRED,   "Its radius.") \
-  F(S, NUMBER,    height,          "m",        "(0, 1000]",        SCENE_REQUIRED,   "Its height.")
+  F(S, NUMBER,    radius,          "m",        "(0, 1000]",        SCENE_REQUIRED, \
+    "Its radius.") \
+  F(S, NUMBER,    height,          "m",        "(0, 1000]",        SCENE_REQUIRED, \
+    "Its height.")
 
 #define SCENE_CAMERA(F, O, L, V, S) \
-  F(S, OPTIONAL_VECTOR, eye,       "m",        "[-10000, 10000]",  "null",           "Position of the eye; null: in front of the container and above it.") \
-  F(S, OPTIONAL_VECTOR, target,    "m",        "[-10000, 10000]",  "null",           "The point looked at; null: in the lower half of the container.") \
-  F(S, NUMBER,    fov,             "degrees",  "(1, 170)",         "38",             "Full vertical angle of view; 38 is a lens of about 35 mm.")
+  F(S, OPTIONAL_VECTOR, eye,       "m",        "[-10000, 10000]",  "null", \
+    "Position of the eye; null: in front of the container and above it.") \
+  F(S, OPTIONAL_VECTOR, target,    "m",        "[-10000, 10000]",  "null", \
+    "The point looked at; null: in the lower half of the container.") \
+  F(S, NUMBER,    fov,             "degrees",  "(1, 170)",         "38", \
+    "Full vertical angle of view; 38 is a lens of about 35 mm.")
 
 #define SCENE_LIGHT(F, O, L, V, S) \
-  F(S, DIRECTION, direction,       "",         "[-1000, 1000]",    "[-0.45, 0.75, 0.5]", "Towards the sun; any length.") \
-  F(S, VECTOR,    colour,          "linear",   "[0, 1000]",        "[3, 2.85, 2.58]", "Irradiance of the sun.") \
-  F(S, SWITCH,    sun,             "",         "",                 "true",           "Off: neither sunlight nor glints.") \
-  F(S, SWITCH,    shadow,          "",         "",                 "true",           "Whether things cast shadows.")
+  F(S, DIRECTION, direction,       "",         "[-1000, 1000]",    "[-0.45, 0.75, 0.5]", \
+    "Towards the sun; any length.") \
+  F(S, VECTOR,    colour,          "linear",   "[0, 1000]",        "[3, 2.85, 2.58]", \
+    "Irradiance of the sun.") \
+  F(S, SWITCH,    sun,             "",         "",                 "true", \
+    "Off: neither sunlight nor glints.") \
+  F(S, SWITCH,    shadow,          "",         "",                 "true", \
+    "Whether things cast shadows.")
 
 #define SCENE_ENVIRONMENT(F, O, L, V, S) \
-  F(S, CHOICE,    sky,             "",         "clear | gradient", "\"clear\"",      "A clear day, or exactly two colours mixed by the height of the direction.") \
-  F(S, VECTOR,    sky_zenith,      "linear",   "[0, 1000]",        "[0.15, 0.35, 0.75]", "Gradient: the colour overhead.") \
-  F(S, VECTOR,    sky_horizon,     "linear",   "[0, 1000]",        "[0.8, 0.88, 0.95]", "Gradient: the colour at and below the horizon.") \
-  F(S, CHOICE,    floor,           "",         "tiles | checker | none", "\"tiles\"", "Pale tiles with fine grout, exactly two unlit colours, or no floor at all.") \
-  F(S, OPTIONAL,  floor_level,     "m",        "[-1000, 1000]",    "null",           "Height of the floor; null: the bottom of the container.") \
-  F(S, NUMBER,    tile_size,       "m",        "[0.001, 1000]",       "0.2",            "Edge of a tile or of a checker square.") \
-  F(S, VECTOR,    checker_even,    "linear",   "[0, 1000]",        "[0.8, 0.8, 0.8]", "Checker: colour where floor(x/size) + floor(z/size) is even.") \
-  F(S, VECTOR,    checker_odd,     "linear",   "[0, 1000]",        "[0.2, 0.2, 0.2]", "Checker: colour elsewhere.")
+  F(S, CHOICE,    sky,             "",         "clear | gradient", "\"clear\"", \
+    "A clear day, or exactly two colours mixed by the height of the direction.") \
+  F(S, VECTOR,    sky_zenith,      "linear",   "[0, 1000]",        "[0.15, 0.35, 0.75]", \
+    "Gradient: the colour overhead.") \
+  F(S, VECTOR,    sky_horizon,     "linear",   "[0, 1000]",        "[0.8, 0.88, 0.95]", \
+    "Gradient: the colour at and below the horizon.") \
+  F(S, CHOICE,    floor,           "",         "tiles | checker | none", "\"tiles\"", \
+    "Pale tiles with fine grout, exactly two unlit colours, or no floor at all.") \
+  F(S, OPTIONAL,  floor_level,     "m",        "[-1000, 1000]",    "null", \
+    "Height of the floor; null: the bottom of the container.") \
+  F(S, NUMBER,    tile_size,       "m",        "[0.001, 1000]",       "0.2", \
+    "Edge of a tile or of a checker square.") \
+  F(S, VECTOR,    checker_even,    "linear",   "[0, 1000]",        "[0.8, 0.8, 0.8]", \
+    "Checker: colour where floor(x/size) + floor(z/size) is even.") \
+  F(S, VECTOR,    checker_odd,     "linear",   "[0, 1000]",        "[0.2, 0.2, 0.2]", \
+    "Checker: colour elsewhere.")
 
 #define SCENE_RENDER(F, O, L, V, S) \
-  F(S, STYLE,     style,           "",         "",                 "\"points\"",     "How the water is drawn.") \
-  F(S, CHOICE,    tone_map,        "",         "none | filmic",    "\"filmic\"",     "none: pictures hold 255 × the linear value, for measurements.") \
-  F(S, NUMBER,    exposure,        "",         "[0.001, 1000]",       "1",              "Factor before the tone curve.") \
-  F(S, VECTOR,    absorption,      "1/m",      "[0, 10000]",       "[3, 0.75, 0.55]", "How strongly the water takes away red, green and blue light.") \
-  F(S, NUMBER,    refractive_index, "",        "[1, 3]",           "1.333",          "Of the water.") \
+  F(S, STYLE,     style,           "",         "",                 "\"points\"", \
+    "How the water is drawn.") \
+  F(S, CHOICE,    tone_map,        "",         "none | filmic",    "\"filmic\"", \
+    "none: pictures hold 255 × the linear value, for measurements.") \
+  F(S, NUMBER,    exposure,        "",         "[0.001, 1000]",       "1", \
+    "Factor before the tone curve.") \
+  F(S, VECTOR,    absorption,      "1/m",      "[0, 10000]",       "[3, 0.75, 0.55]", \
+    "How strongly the water takes away red, green and blue light.") \
+  F(S, NUMBER,    refractive_index, "",        "[1, 3]",           "1.333", \
+    "Of the water.") \
   O(S, ScenePoints, points,        "The style points.")
 
 #define SCENE_POINTS(F, O, L, V, S) \
-  F(S, NUMBER,    scale,           "radii",    "[0.1, 5]",         "1.25",           "Radius of the spheres drawn, in particle radii.")
+  F(S, NUMBER,    scale,           "radii",    "[0.1, 5]",         "1.25", \
+    "Radius of the spheres drawn, in particle radii.")
 
 #define SCENE_EVENT(F, O, L, V, S) \
-  F(S, CHOICE,    type,            "",         "push | pour | tilt | style | camera | (drag)", SCENE_REQUIRED, "What happens.") \
-  F(S, REAL,      time,            "s",        "[0, 3600]",        "0",              "When it begins.") \
-  F(S, REAL,      duration,        "s",        "[0, 3600]",        "0",              "How long it lasts; 0: one frame.") \
+  F(S, CHOICE,    type,            "",         "push | pour | tilt | style | camera | (drag)", SCENE_REQUIRED, \
+    "What happens.") \
+  F(S, REAL,      time,            "s",        "[0, 3600]",        "0", \
+    "When it begins.") \
+  F(S, REAL,      duration,        "s",        "[0, 3600]",        "0", \
+    "How long it lasts; 0: one frame.") \
   V(S, PUSH,      push,            ScenePush,       "Accelerates the water around a ray while it lasts.") \
   V(S, POUR,      pour,            ScenePour,       "Fills a box with water, again and again while it lasts.") \
   V(S, TILT,      tilt,            SceneTilt,       "Turns gravity, evenly over the duration.") \
@@ -139,27 +197,40 @@
   V(S, CAMERA,    camera,          SceneCameraEvent, "Moves the camera, smoothly over the duration.")
 
 #define SCENE_PUSH(F, O, L, V, S) \
-  F(S, VECTOR,    origin,          "m",        "[-10000, 10000]",  SCENE_REQUIRED,   "A point on the ray.") \
-  F(S, DIRECTION, direction,       "",         "[-10000, 10000]",  SCENE_REQUIRED,   "Along the ray; made a unit vector when read.") \
-  F(S, NUMBER,    radius,          "m",        "(0, 1000]",        "0.2",            "Distance from the ray at which the push has faded to nothing.") \
-  F(S, VECTOR,    acceleration,    "m/s²",     "[-10000, 10000]",  SCENE_REQUIRED,   "On the ray itself.")
+  F(S, VECTOR,    origin,          "m",        "[-10000, 10000]",  SCENE_REQUIRED, \
+    "A point on the ray.") \
+  F(S, DIRECTION, direction,       "",         "[-10000, 10000]",  SCENE_REQUIRED, \
+    "Along the ray; made a unit vector when read.") \
+  F(S, NUMBER,    radius,          "m",        "(0, 1000]",        "0.2", \
+    "Distance from the ray at which the push has faded to nothing.") \
+  F(S, VECTOR,    acceleration,    "m/s²",     "[-10000, 10000]",  SCENE_REQUIRED, \
+    "On the ray itself.")
 
 #define SCENE_POUR(F, O, L, V, S) \
-  F(S, VECTOR,    min,             "m",        "[-1000, 1000]",    SCENE_REQUIRED,   "Lowest corner.") \
-  F(S, VECTOR,    max,             "m",        "[-1000, 1000]",    SCENE_REQUIRED,   "Highest corner.") \
-  F(S, VECTOR,    velocity,        "m/s",      "[-1000, 1000]",    "[0, 0, 0]",      "Velocity of the new water.") \
-  F(S, VECTOR,    colour,          "linear",   "[0, 1]",           "[0, 0, 0]",      "Colour of the new water; all 0: the natural one.")
+  F(S, VECTOR,    min,             "m",        "[-1000, 1000]",    SCENE_REQUIRED, \
+    "Lowest corner.") \
+  F(S, VECTOR,    max,             "m",        "[-1000, 1000]",    SCENE_REQUIRED, \
+    "Highest corner.") \
+  F(S, VECTOR,    velocity,        "m/s",      "[-1000, 1000]",    "[0, 0, 0]", \
+    "Velocity of the new water.") \
+  F(S, VECTOR,    colour,          "linear",   "[0, 1]",           "[0, 0, 0]", \
+    "Colour of the new water; all 0: the natural one.")
 
 #define SCENE_TILT(F, O, L, V, S) \
-  F(S, VECTOR,    gravity,         "m/s²",     "[-1000, 1000]",    SCENE_REQUIRED,   "Gravity at the end.")
+  F(S, VECTOR,    gravity,         "m/s²",     "[-1000, 1000]",    SCENE_REQUIRED, \
+    "Gravity at the end.")
 
 #define SCENE_STYLE_EVENT(F, O, L, V, S) \
-  F(S, STYLE,     name,            "",         "",                 SCENE_REQUIRED,   "The new style.")
+  F(S, STYLE,     name,            "",         "",                 SCENE_REQUIRED, \
+    "The new style.")
 
 #define SCENE_CAMERA_EVENT(F, O, L, V, S) \
-  F(S, VECTOR,    eye,             "m",        "[-10000, 10000]",  SCENE_REQUIRED,   "Position of the eye at the end.") \
-  F(S, VECTOR,    target,          "m",        "[-10000, 10000]",  SCENE_REQUIRED,   "The point looked at, at the end.") \
-  F(S, OPTIONAL,  fov,             "degrees",  "(1, 170)",         "null",           "Vertical angle of view at the end; null: that of the scene's camera.")
+  F(S, VECTOR,    eye,             "m",        "[-10000, 10000]",  SCENE_REQUIRED, \
+    "Position of the eye at the end.") \
+  F(S, VECTOR,    target,          "m",        "[-10000, 10000]",  SCENE_REQUIRED, \
+    "The point looked at, at the end.") \
+  F(S, OPTIONAL,  fov,             "degrees",  "(1, 170)",         "null", \
+    "Vertical angle of view at the end; null: that of the scene's camera.")
 
 /// Every struct but the top one, inner ones first: T(Struct, its table).
 #define SCENE_STRUCTS(T) \

@@ -76,7 +76,7 @@ bool scene_find(const char *name, char *path, size_t size) {
   return is_folder(path);
 }
 
-// ---- The message when there is none ----------------------------------------------------------------------------------
+// ---- The message when there is none ---------------------------------------------------------------------------------
 
 /// The shipped scene whose name is nearest to `name`, copied to `nearest`.
 static bool nearest_scene(const char *name, char *nearest, size_t size) {
@@ -109,5 +109,6 @@ bool scene_fail_not_found(const char *name, AppError *error) {
   if (ending) *ending = 0;
   if (nearest_scene(base, nearest, sizeof nearest))
     return app_fail(error, APP_BAD_INPUT, "%s: no such scene, did you mean \"%s\"?", printable, nearest);
-  return app_fail(error, APP_BAD_INPUT, "%s: no such file, and no shipped scene of that name (see lido list)", printable);
+  return app_fail(error, APP_BAD_INPUT, "%s: no such file, and no shipped scene of that name (see lido list)",
+                  printable);
 }

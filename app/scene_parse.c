@@ -15,7 +15,7 @@ typedef struct Value {
   const cJSON *json;
 } Value;
 
-// ---- Messages --------------------------------------------------------------------------------------------------------
+// ---- Messages -------------------------------------------------------------------------------------------------------
 
 /// What stands there, in a few words.
 static const char *got(const cJSON *json, char *text, size_t size) {
@@ -25,10 +25,11 @@ static const char *got(const cJSON *json, char *text, size_t size) {
   else if (cJSON_IsString(json))
     snprintf(text, size, "\"%s\"", text_printable(printable, sizeof printable, json->valuestring, 40));
   else
-    snprintf(text, size, "%s", cJSON_IsBool(json)    ? cJSON_IsTrue(json) ? "true" : "false"
-                               : cJSON_IsNull(json)  ? "null"
-                               : cJSON_IsArray(json) ? "a list"
-                                                     : "an object");
+    snprintf(text, size, "%s",
+             cJSON_IsBool(json)    ? cJSON_IsTrue(json) ? "true" : "false"
+             : cJSON_IsNull(json)  ? "null"
+             : cJSON_IsArray(json) ? "a list"
+                                   : "an object");
   return text;
 }
 
@@ -44,7 +45,7 @@ static bool must_be_in_range(const Value *value, const char *what) {
   return must_be(value, text);
 }
 
-// ---- Single values: each reader writes the member or fails with a message ------------------------------------------------
+// ---- Single values: each reader writes the member or fails with a message -------------------------------------------
 
 static bool read_real(const Value *value, double *member) {
   if (!cJSON_IsNumber(value->json)) return must_be_in_range(value, "a number ");
@@ -146,8 +147,10 @@ static bool read_direction(const Value *value, float *member) {
 static bool read_value(const Value *value, void *member) {
   double number = 0;
   switch (value->field->type) {
-  case SCENE_NUMBER: return read_number(value, member);
-  case SCENE_REAL: return read_real(value, member);
+  case SCENE_NUMBER:
+    return read_number(value, member);
+  case SCENE_REAL:
+    return read_real(value, member);
   case SCENE_INTEGER:
     if (!read_whole(value, &number)) return false;
     *(int32_t *)member = (int32_t)number;
@@ -160,22 +163,28 @@ static bool read_value(const Value *value, void *member) {
     if (!cJSON_IsBool(value->json)) return must_be(value, "true or false");
     *(bool *)member = cJSON_IsTrue(value->json);
     return true;
-  case SCENE_TEXT: return read_text(value, member);
-  case SCENE_CHOICE: return (*(int32_t *)member = read_name(value)) >= 0;
-  case SCENE_STYLE: return read_name(value) >= 0 && read_text(value, member);
-  case SCENE_VECTOR: return read_vector(value, member);
-  case SCENE_DIRECTION: return read_direction(value, member);
+  case SCENE_TEXT:
+    return read_text(value, member);
+  case SCENE_CHOICE:
+    return (*(int32_t *)member = read_name(value)) >= 0;
+  case SCENE_STYLE:
+    return read_name(value) >= 0 && read_text(value, member);
+  case SCENE_VECTOR:
+    return read_vector(value, member);
+  case SCENE_DIRECTION:
+    return read_direction(value, member);
   case SCENE_OPTIONAL:
     *(float *)member = NAN;
     return cJSON_IsNull(value->json) || read_number(value, member);
   case SCENE_OPTIONAL_VECTOR:
     for (int i = 0; i < 3; i++) ((float *)member)[i] = NAN;
     return cJSON_IsNull(value->json) || read_vector(value, member);
-  default: return false; // objects have readers of their own
+  default:
+    return false; // objects have readers of their own
   }
 }
 
-// ---- Objects and lists -----------------------------------------------------------------------------------------------
+// ---- Objects and lists ----------------------------------------------------------------------------------------------
 
 static bool read_object(const Value *value, const SceneObject *object, char *members);
 

@@ -46,20 +46,41 @@ static void print_value(Text *text, const SceneField *field, const char *owner, 
   const void *member = owner + field->offset;
   switch (field->type) {
   case SCENE_NUMBER:
-  case SCENE_OPTIONAL: text_add_float(text, *(const float *)member); break;
-  case SCENE_REAL: text_add_double(text, *(const double *)member); break;
-  case SCENE_INTEGER: text_format(text, "%d", (int)*(const int32_t *)member); break;
-  case SCENE_SEED: text_format(text, "%llu", (unsigned long long)*(const uint64_t *)member); break;
-  case SCENE_SWITCH: text_add(text, *(const bool *)member ? "true" : "false"); break;
+  case SCENE_OPTIONAL:
+    text_add_float(text, *(const float *)member);
+    break;
+  case SCENE_REAL:
+    text_add_double(text, *(const double *)member);
+    break;
+  case SCENE_INTEGER:
+    text_format(text, "%d", (int)*(const int32_t *)member);
+    break;
+  case SCENE_SEED:
+    text_format(text, "%llu", (unsigned long long)*(const uint64_t *)member);
+    break;
+  case SCENE_SWITCH:
+    text_add(text, *(const bool *)member ? "true" : "false");
+    break;
   case SCENE_TEXT:
-  case SCENE_STYLE: text_add_json_string(text, member); break;
-  case SCENE_CHOICE: print_choice(text, field, *(const int32_t *)member); break;
+  case SCENE_STYLE:
+    text_add_json_string(text, member);
+    break;
+  case SCENE_CHOICE:
+    print_choice(text, field, *(const int32_t *)member);
+    break;
   case SCENE_VECTOR:
   case SCENE_DIRECTION:
-  case SCENE_OPTIONAL_VECTOR: print_vector(text, member); break;
-  case SCENE_OBJECT: print_object(text, field->object, member, depth); break;
-  case SCENE_LIST: print_list(text, field, owner, depth); break;
-  case SCENE_VARIANT: break; // print_fields goes into these
+  case SCENE_OPTIONAL_VECTOR:
+    print_vector(text, member);
+    break;
+  case SCENE_OBJECT:
+    print_object(text, field->object, member, depth);
+    break;
+  case SCENE_LIST:
+    print_list(text, field, owner, depth);
+    break;
+  case SCENE_VARIANT:
+    break; // print_fields goes into these
   }
 }
 

@@ -9,7 +9,8 @@ static const char introduction[] =
     "\n"
     "<!-- Made by: lido check --reference > docs/scene.md. Edit app/scene_fields.h instead. -->\n"
     "\n"
-    "A scene is a JSON file. Lengths are in metres, y points up, colours are linear light. Only keys without a default\n"
+    "A scene is a JSON file. Lengths are in metres, y points up, colours are linear light. Only keys without a "
+    "default\n"
     "must be given; unknown keys are errors. `lido check SCENE` prints a scene with every default filled in, and\n"
     "`--set key.path=value` changes any key from the command line: `--set simulation.cfl=0.3`,\n"
     "`--set fluid.0.velocity=[1,0,0]`, `--set render.style=points`.\n"
@@ -28,20 +29,31 @@ static const char introduction[] =
 static const char *type_name(const SceneField *field) {
   switch (field->type) {
   case SCENE_NUMBER:
-  case SCENE_REAL: return "number";
+  case SCENE_REAL:
+    return "number";
   case SCENE_INTEGER:
-  case SCENE_SEED: return "whole number";
-  case SCENE_SWITCH: return "true or false";
-  case SCENE_TEXT: return "string";
+  case SCENE_SEED:
+    return "whole number";
+  case SCENE_SWITCH:
+    return "true or false";
+  case SCENE_TEXT:
+    return "string";
   case SCENE_CHOICE:
-  case SCENE_STYLE: return "one of";
+  case SCENE_STYLE:
+    return "one of";
   case SCENE_VECTOR:
-  case SCENE_DIRECTION: return "3 numbers";
-  case SCENE_OPTIONAL: return "number or null";
-  case SCENE_OPTIONAL_VECTOR: return "3 numbers or null";
-  case SCENE_OBJECT: return "object";
-  case SCENE_LIST: return "list of objects";
-  case SCENE_VARIANT: return "";
+  case SCENE_DIRECTION:
+    return "3 numbers";
+  case SCENE_OPTIONAL:
+    return "number or null";
+  case SCENE_OPTIONAL_VECTOR:
+    return "3 numbers or null";
+  case SCENE_OBJECT:
+    return "object";
+  case SCENE_LIST:
+    return "list of objects";
+  case SCENE_VARIANT:
+    return "";
   }
   return "";
 }
@@ -56,21 +68,27 @@ static void add_range(Text *text, const SceneField *field) {
     scene_choices_list(&choices, list, sizeof list);
     text_add(text, list);
     break;
-  case SCENE_TEXT: text_format(text, "at most %d bytes", SCENE_TEXT_SIZE - 1); break;
-  case SCENE_LIST: text_format(text, "at most %d", field->limit); break;
-  default: text_add(text, field->range); break;
+  case SCENE_TEXT:
+    text_format(text, "at most %d bytes", SCENE_TEXT_SIZE - 1);
+    break;
+  case SCENE_LIST:
+    text_format(text, "at most %d", field->limit);
+    break;
+  default:
+    text_add(text, field->range);
+    break;
   }
 }
 
 static void add_row(Text *text, const SceneField *field) {
   text_format(text, "| `%s` | %s | ", field->key, type_name(field));
   add_range(text, field);
-  bool inner = field->type == SCENE_OBJECT;
-  text_format(text, " | %s | %s%s%s | %s |\n", field->unit, inner ? "" : field->fallback ? "`" : "",
-              inner             ? ""
-              : field->fallback ? field->fallback
-                                : "**required**",
-              inner ? "" : field->fallback ? "`" : "", field->doc);
+  text_format(text, " | %s | ", field->unit);
+  if (!field->fallback)
+    text_add(text, "**required**");
+  else if (field->type != SCENE_OBJECT)
+    text_format(text, "`%s`", field->fallback);
+  text_format(text, " | %s |\n", field->doc);
 }
 
 static void add_table(Text *text, const SceneObject *object) {

@@ -50,18 +50,35 @@ static void add_names(Text *text, const SceneField *field) {
 static void add_constraints(Text *text, const SceneField *field) {
   switch (field->type) {
   case SCENE_NUMBER:
-  case SCENE_REAL: add_number(text, field, "\"number\""); break;
+  case SCENE_REAL:
+    add_number(text, field, "\"number\"");
+    break;
   case SCENE_INTEGER:
-  case SCENE_SEED: add_number(text, field, "\"integer\""); break;
-  case SCENE_OPTIONAL: add_number(text, field, "[\"number\", \"null\"]"); break;
-  case SCENE_SWITCH: text_add(text, "\"type\": \"boolean\""); break;
-  case SCENE_TEXT: text_format(text, "\"type\": \"string\", \"maxLength\": %d", SCENE_TEXT_SIZE - 1); break;
+  case SCENE_SEED:
+    add_number(text, field, "\"integer\"");
+    break;
+  case SCENE_OPTIONAL:
+    add_number(text, field, "[\"number\", \"null\"]");
+    break;
+  case SCENE_SWITCH:
+    text_add(text, "\"type\": \"boolean\"");
+    break;
+  case SCENE_TEXT:
+    text_format(text, "\"type\": \"string\", \"maxLength\": %d", SCENE_TEXT_SIZE - 1);
+    break;
   case SCENE_CHOICE:
-  case SCENE_STYLE: add_names(text, field); break;
+  case SCENE_STYLE:
+    add_names(text, field);
+    break;
   case SCENE_VECTOR:
-  case SCENE_DIRECTION: add_vector(text, field, "\"array\""); break;
-  case SCENE_OPTIONAL_VECTOR: add_vector(text, field, "[\"array\", \"null\"]"); break;
-  default: break; // objects and lists have their own form
+  case SCENE_DIRECTION:
+    add_vector(text, field, "\"array\"");
+    break;
+  case SCENE_OPTIONAL_VECTOR:
+    add_vector(text, field, "[\"array\", \"null\"]");
+    break;
+  default:
+    break; // objects and lists have their own form
   }
 }
 

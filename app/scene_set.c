@@ -13,11 +13,11 @@ enum { LONGEST_PATH = 200 };
 /// One change, on its way down the tree.
 typedef struct Change {
   const SceneSource *source;
-  const char *set;            // as given
-  char printable[220];        // the same, fit for a message
-  const char *value;          // behind the '='
-  const SceneObject *object;  // of the table, where we are; NULL: the table does not know this place
-  const SceneField *field;    // of the value reached last; NULL alike
+  const char *set;           // as given
+  char printable[220];       // the same, fit for a message
+  const char *value;         // behind the '='
+  const SceneObject *object; // of the table, where we are; NULL: the table does not know this place
+  const SceneField *field;   // of the value reached last; NULL alike
 } Change;
 
 static bool refuse(const Change *change, const char *cause, const char *detail) {
@@ -43,7 +43,7 @@ static void follow_table(Change *change, const char *key) {
   change->object = inner ? change->field->object : NULL;
 }
 
-/// The value to put in: JSON if it is JSON, else a string without its quotes. A key that takes a string takes it anyhow.
+/// The value to put in: JSON if it is JSON, else a string without its quotes. A key of a string takes any.
 static cJSON *make_value(const Change *change) {
   size_t size = strlen(change->value);
   bool text = change->field && scene_type_is_text(change->field->type);

@@ -55,14 +55,17 @@ static bool unexpected(Scan *scan, const char *wanted) {
   return false;
 }
 
-// ---- Strings, numbers, words -----------------------------------------------------------------------------------------
+// ---- Strings, numbers, words ----------------------------------------------------------------------------------------
 
 /// Four hexadecimal digits; −1 when they are not.
 static int scan_hex(Scan *scan) {
   int code = 0;
   for (int i = 0; i < 4; i++, scan->at++) {
     int c = peek(scan);
-    int digit = c >= '0' && c <= '9' ? c - '0' : c >= 'a' && c <= 'f' ? c - 'a' + 10 : c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
+    int digit = c >= '0' && c <= '9'   ? c - '0'
+                : c >= 'a' && c <= 'f' ? c - 'a' + 10
+                : c >= 'A' && c <= 'F' ? c - 'A' + 10
+                                       : -1;
     if (digit < 0) return -1;
     code = 16 * code + digit;
   }
@@ -143,7 +146,7 @@ static bool scan_word(Scan *scan, const char *word) {
   return true;
 }
 
-// ---- Objects and lists -----------------------------------------------------------------------------------------------
+// ---- Objects and lists ----------------------------------------------------------------------------------------------
 
 /// Behind a member or item: true at the end of the list; otherwise after its comma, or with a cause.
 static bool scan_next(Scan *scan, char close, size_t start, bool *done) {
@@ -225,11 +228,11 @@ bool scene_check_syntax(const SceneSource *source) {
   // Where the text ends too early, its last line is the last with something in it.
   size_t at = scan.at;
   while (scan.at == source->size && at > 0 && is_space(source->text[at - 1])) at--;
-  return app_fail(source->error, APP_BAD_INPUT, "%s:%d: not valid JSON: %s", source->name,
-                  line_of(source->text, at), scan.cause);
+  return app_fail(source->error, APP_BAD_INPUT, "%s:%d: not valid JSON: %s", source->name, line_of(source->text, at),
+                  scan.cause);
 }
 
-// ---- Lines -----------------------------------------------------------------------------------------------------------
+// ---- Lines ----------------------------------------------------------------------------------------------------------
 
 /// Go on to member or item number `ordinal` of the value at hand; false when there is none.
 static bool enter(Scan *scan, int ordinal, size_t *place) {
@@ -268,7 +271,7 @@ int scene_locate(const char *text, size_t size, const ScenePath *path) {
   return line_of(text, place);
 }
 
-// ---- Messages --------------------------------------------------------------------------------------------------------
+// ---- Messages -------------------------------------------------------------------------------------------------------
 
 char *scene_path_print(const ScenePath *path, char *text, size_t size) {
   if (!path->parent) {

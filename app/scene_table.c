@@ -7,25 +7,25 @@
 // Styles that the design names; they are refused with a clear message as long as the renderer does not have them.
 static const char *const later_styles[] = {"refraction", "cartoon", "heightfield", "raycast"};
 
-// ---- The table as data -----------------------------------------------------------------------------------------------
+// ---- The table as data ----------------------------------------------------------------------------------------------
 
-#define FIELD(S, type, key, unit, range, fallback, doc) \
+#define FIELD(S, type, key, unit, range, fallback, doc)                                                                \
   {SCENE_##type, #key, unit, range, fallback, doc, offsetof(S, key), 0, 0, NULL},
 #define OBJECT(S, Struct, key, doc) {SCENE_OBJECT, #key, "", "", "{}", doc, offsetof(S, key), 0, 0, &object_##Struct},
-#define LIST(S, Struct, key, limit, doc) \
+#define LIST(S, Struct, key, limit, doc)                                                                               \
   {SCENE_LIST, #key, "", "", "[]", doc, offsetof(S, key), offsetof(S, key##_count), limit, &object_##Struct},
-#define VARIANT(S, NAME, key, Struct, doc) \
+#define VARIANT(S, NAME, key, Struct, doc)                                                                             \
   {SCENE_VARIANT, #key, "", "", "{}", doc, offsetof(S, key), 0, 0, &object_##Struct},
 
-#define TABLE_OF(S, TABLE) \
-  static const SceneField fields_##S[] = {TABLE(FIELD, OBJECT, LIST, VARIANT, S)}; \
+#define TABLE_OF(S, TABLE)                                                                                             \
+  static const SceneField fields_##S[] = {TABLE(FIELD, OBJECT, LIST, VARIANT, S)};                                     \
   static const SceneObject object_##S = {#S, sizeof(S), (int)(sizeof fields_##S / sizeof fields_##S[0]), fields_##S};
 SCENE_STRUCTS(TABLE_OF)
 
 static const SceneField fields_top[] = {SCENE_TOP(FIELD, OBJECT, LIST, VARIANT, Scene)};
 const SceneObject scene_top = {"Scene", sizeof(Scene), (int)(sizeof fields_top / sizeof fields_top[0]), fields_top};
 
-// ---- What the columns say --------------------------------------------------------------------------------------------
+// ---- What the columns say -------------------------------------------------------------------------------------------
 
 SceneInterval scene_interval(const SceneField *field) {
   const char *range = field->range;

@@ -140,7 +140,7 @@ char *text_printable(char *to, size_t size, const char *from, size_t limit) {
   return to;
 }
 
-// ---- The nearest name ------------------------------------------------------------------------------------------------
+// ---- The nearest name -----------------------------------------------------------------------------------------------
 
 enum { LONGEST_NAME = 64 };
 

@@ -34,7 +34,11 @@ static Options parsed(const char *line) {
 
 static void test_commands_and_sources(void **state) {
   (void)state;
-  const struct { const char *line; int command; const char *source; } cases[] = {
+  const struct {
+    const char *line;
+    int command;
+    const char *source;
+  } cases[] = {
       {"lido", COMMAND_window, SCENE_DEFAULT},
       {"lido still_pool", COMMAND_window, "still_pool"},
       {"lido window", COMMAND_window, SCENE_DEFAULT},
@@ -79,8 +83,9 @@ static void test_defaults(void **state) {
 
 static void test_values(void **state) {
   (void)state;
-  Options o = parsed("lido render s --output a.png --style points --size=64x48 --frames 10:20 --fps 24.5 --context osmesa "
-                     "--threads 3 --quiet");
+  Options o =
+      parsed("lido render s --output a.png --style points --size=64x48 --frames 10:20 --fps 24.5 --context osmesa "
+             "--threads 3 --quiet");
   assert_string_equal(o.output, "a.png");
   assert_string_equal(o.style, "points");
   assert_true(o.width == 64 && o.height == 48 && o.first_frame == 10 && o.last_frame == 19);
@@ -112,9 +117,12 @@ static void test_style_and_seed_win_over_set(void **state) {
 
 static void test_frames(void **state) {
   (void)state;
-  const struct { const char *line; int first, last; } cases[] = {
-      {"lido --frames 1", 0, 0},     {"lido --frames 60", 0, 59}, {"lido --frames 5:6", 5, 5},
-      {"lido --frames :4", 0, 3},    {"lido --frames 7:", 7, -1}, {"lido --frames 0:10000000", 0, 9999999},
+  const struct {
+    const char *line;
+    int first, last;
+  } cases[] = {
+      {"lido --frames 1", 0, 0},  {"lido --frames 60", 0, 59}, {"lido --frames 5:6", 5, 5},
+      {"lido --frames :4", 0, 3}, {"lido --frames 7:", 7, -1}, {"lido --frames 0:10000000", 0, 9999999},
   };
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
     Options o = parsed(cases[i].line);
@@ -126,8 +134,8 @@ static void test_frames(void **state) {
 
 static void test_help_and_version_need_nothing_else(void **state) {
   (void)state;
-  const char *const lines[] = {"lido --help", "lido render --help", "lido -h render", "lido simulate -h", "lido --version",
-                               "lido check --version"};
+  const char *const lines[] = {"lido --help",      "lido render --help", "lido -h render",
+                               "lido simulate -h", "lido --version",     "lido check --version"};
   for (size_t i = 0; i < sizeof lines / sizeof *lines; i++) {
     Options o = parsed(lines[i]);
     assert_true(o.help || o.version);
@@ -137,7 +145,9 @@ static void test_help_and_version_need_nothing_else(void **state) {
 
 static void test_refusals(void **state) {
   (void)state;
-  const struct { const char *line, *message; } cases[] = {
+  const struct {
+    const char *line, *message;
+  } cases[] = {
       {"lido --styl points", "--styl: unknown option, did you mean --style?"},
       {"lido --xyzzy", "--xyzzy: unknown option (see lido --help)"},
       {"lido -x", "-x: unknown option (see lido --help)"},
@@ -181,14 +191,41 @@ static void test_refusals(void **state) {
 static void test_values_out_of_range(void **state) {
   (void)state;
   const char *const lines[] = {
-      "lido --size 0x5",       "lido --size 5x0",      "lido --size 16385x5", "lido --size 5x5x5",  "lido --size -5x5",
-      "lido --size x5",        "lido --size 5x",       "lido --frames 0",     "lido --frames -1",   "lido --frames :",
-      "lido --frames 5:5",     "lido --frames 5:4",    "lido --frames a",     "lido --frames 1:b",  "lido --frames 1:2:3",
-      "lido --frames 99999999999999999999",            "lido --fps 0",        "lido --fps -1",      "lido --fps 1e9",
-      "lido --fps inf",        "lido --fps 5x",        "lido --threads 257",  "lido --threads 1.5", "lido --threads two",
-      "lido --seed 1e3",       "lido --seed 99999999999999999999",            "lido --seed 9007199254740992",
-      "lido --camera 1,2,3",   "lido --camera 1,2,3,4,5", "lido --camera 1,2,3,4,5,6,7", "lido --camera 1,2,3,4,5,x",
-      "lido --camera 1,2,3,1,2,3", "lido --camera 1,2,3,4,5,nan", "lido --camera 1,2,3,4,5,1e30", "lido --camera ,,,,,",
+      "lido --size 0x5",
+      "lido --size 5x0",
+      "lido --size 16385x5",
+      "lido --size 5x5x5",
+      "lido --size -5x5",
+      "lido --size x5",
+      "lido --size 5x",
+      "lido --frames 0",
+      "lido --frames -1",
+      "lido --frames :",
+      "lido --frames 5:5",
+      "lido --frames 5:4",
+      "lido --frames a",
+      "lido --frames 1:b",
+      "lido --frames 1:2:3",
+      "lido --frames 99999999999999999999",
+      "lido --fps 0",
+      "lido --fps -1",
+      "lido --fps 1e9",
+      "lido --fps inf",
+      "lido --fps 5x",
+      "lido --threads 257",
+      "lido --threads 1.5",
+      "lido --threads two",
+      "lido --seed 1e3",
+      "lido --seed 99999999999999999999",
+      "lido --seed 9007199254740992",
+      "lido --camera 1,2,3",
+      "lido --camera 1,2,3,4,5",
+      "lido --camera 1,2,3,4,5,6,7",
+      "lido --camera 1,2,3,4,5,x",
+      "lido --camera 1,2,3,1,2,3",
+      "lido --camera 1,2,3,4,5,nan",
+      "lido --camera 1,2,3,4,5,1e30",
+      "lido --camera ,,,,,",
   };
   for (size_t i = 0; i < sizeof lines / sizeof *lines; i++) {
     Options options;
@@ -221,8 +258,9 @@ static void test_control_characters_are_not_echoed(void **state) {
 
 static void test_help_names_every_command_and_option(void **state) {
   (void)state;
-  const char *const options[] = {"output", "style", "size", "frames", "fps", "context", "threads", "seed", "set", "camera",
-                                 "layer", "stats", "json", "schema", "reference", "quiet", "help", "version"};
+  const char *const options[] = {"output",  "style",  "size",      "frames", "fps",   "context",
+                                 "threads", "seed",   "set",       "camera", "layer", "stats",
+                                 "json",    "schema", "reference", "quiet",  "help",  "version"};
   char *text = NULL;
   size_t size;
   FILE *file = open_memstream(&text, &size);

@@ -14,14 +14,17 @@ static const char *const whole = //
     "  \"obstacles\": [\n"
     "    {\"type\": \"box\", \"size\": [0.1, 0.2, 0.3], \"position\": [0.7, 0.1, 0], \"rotation\": [0, 90, 0]},\n"
     "    {\"type\": \"sphere\", \"radius\": 0.1, \"position\": [0.8, 1, 0]},\n"
-    "    {\"type\": \"cylinder\", \"radius\": 0.1, \"height\": 0.5, \"position\": [0.8, 1, 0.5], \"motion\": \"static\"}],\n"
+    "    {\"type\": \"cylinder\", \"radius\": 0.1, \"height\": 0.5, \"position\": [0.8, 1, 0.5], \"motion\": "
+    "\"static\"}],\n"
     "  \"camera\": {\"eye\": [0, 1, 4], \"target\": [0, 0.5, 0], \"fov\": 40},\n"
     "  \"light\": {\"direction\": [0, 2, 0], \"sun\": false},\n"
-    "  \"environment\": {\"sky\": \"gradient\", \"floor\": \"checker\", \"floor_level\": -0.5, \"checker_odd\": [0, 0, 1]},\n"
+    "  \"environment\": {\"sky\": \"gradient\", \"floor\": \"checker\", \"floor_level\": -0.5, \"checker_odd\": [0, 0, "
+    "1]},\n"
     "  \"render\": {\"style\": \"points\", \"tone_map\": \"none\", \"points\": {\"scale\": 1}},\n"
     "  \"events\": [\n"
     "    {\"type\": \"camera\", \"time\": 3, \"eye\": [1, 1, 4], \"target\": [0, 0, 0]},\n"
-    "    {\"type\": \"push\", \"time\": 1, \"origin\": [0, 0, 5], \"direction\": [0, 0, -4], \"acceleration\": [0, 0, -9]},\n"
+    "    {\"type\": \"push\", \"time\": 1, \"origin\": [0, 0, 5], \"direction\": [0, 0, -4], \"acceleration\": [0, 0, "
+    "-9]},\n"
     "    {\"type\": \"pour\", \"time\": 1, \"min\": [0, 1, 0], \"max\": [0.2, 1.2, 0.2]},\n"
     "    {\"type\": \"tilt\", \"time\": 0.5, \"duration\": 1, \"gravity\": [3, -9, 0]},\n"
     "    {\"type\": \"style\", \"time\": 2, \"name\": \"points\"}]\n"
@@ -103,7 +106,7 @@ static void test_render_settings_and_view_hold_the_scene(void **state) {
   scene_free(&scene);
 }
 
-// ---- Defaults --------------------------------------------------------------------------------------------------------
+// ---- Defaults -------------------------------------------------------------------------------------------------------
 
 static void test_defaults_are_those_of_the_libraries(void **state) {
   (void)state;
@@ -138,15 +141,25 @@ static void test_defaults_are_those_of_the_libraries(void **state) {
 
 static void test_names_in_the_table_stand_for_the_right_values(void **state) {
   (void)state;
-  const struct { const char *object, *key, *name; int value; } rows[] = {
-      {"simulation", "solver", "pbf", SIM_SOLVER_PBF},     {"obstacles", "type", "box", SIM_BOX},
-      {"obstacles", "type", "sphere", SIM_SPHERE},         {"obstacles", "type", "cylinder", SIM_CYLINDER},
-      {"environment", "sky", "clear", RENDER_SKY_CLEAR},   {"environment", "sky", "gradient", RENDER_SKY_GRADIENT},
-      {"environment", "floor", "tiles", RENDER_FLOOR_TILES}, {"environment", "floor", "checker", RENDER_FLOOR_CHECKER},
-      {"environment", "floor", "none", RENDER_FLOOR_NONE}, {"render", "tone_map", "none", RENDER_TONE_NONE},
-      {"render", "tone_map", "filmic", RENDER_TONE_FILMIC}, {"events", "type", "push", EVENT_PUSH},
-      {"events", "type", "pour", EVENT_POUR},              {"events", "type", "tilt", EVENT_TILT},
-      {"events", "type", "style", EVENT_STYLE},            {"events", "type", "camera", EVENT_CAMERA}};
+  const struct {
+    const char *object, *key, *name;
+    int value;
+  } rows[] = {{"simulation", "solver", "pbf", SIM_SOLVER_PBF},
+              {"obstacles", "type", "box", SIM_BOX},
+              {"obstacles", "type", "sphere", SIM_SPHERE},
+              {"obstacles", "type", "cylinder", SIM_CYLINDER},
+              {"environment", "sky", "clear", RENDER_SKY_CLEAR},
+              {"environment", "sky", "gradient", RENDER_SKY_GRADIENT},
+              {"environment", "floor", "tiles", RENDER_FLOOR_TILES},
+              {"environment", "floor", "checker", RENDER_FLOOR_CHECKER},
+              {"environment", "floor", "none", RENDER_FLOOR_NONE},
+              {"render", "tone_map", "none", RENDER_TONE_NONE},
+              {"render", "tone_map", "filmic", RENDER_TONE_FILMIC},
+              {"events", "type", "push", EVENT_PUSH},
+              {"events", "type", "pour", EVENT_POUR},
+              {"events", "type", "tilt", EVENT_TILT},
+              {"events", "type", "style", EVENT_STYLE},
+              {"events", "type", "camera", EVENT_CAMERA}};
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
     const SceneField *object = scene_field_find(&scene_top, rows[i].object);
     SceneChoices choices;
@@ -190,7 +203,7 @@ static void test_camera_is_found_when_none_is_given(void **state) {
   scene_free(&scene);
 }
 
-// ---- Messages --------------------------------------------------------------------------------------------------------
+// ---- Messages -------------------------------------------------------------------------------------------------------
 
 static void test_messages_name_line_path_and_cause(void **state) {
   (void)state;
@@ -224,8 +237,9 @@ static void test_keys_are_known_and_stand_once(void **state) {
   refused("{\"version\": 1, \"fluid\": [{\"min\": [0,0,0], \"max\": [1,1,1],\n\"n\\u0061me\\n\": 3}]}",
           "t.json:2: fluid.0.name?: unknown key");
   // A key of another kind of item is unknown here.
-  refused("{\"version\": 1, \"obstacles\": [{\"type\": \"sphere\", \"radius\": 1, \"position\": [0,0,0], \"height\": 1}]}",
-          "t.json:1: obstacles.0.height: unknown key");
+  refused(
+      "{\"version\": 1, \"obstacles\": [{\"type\": \"sphere\", \"radius\": 1, \"position\": [0,0,0], \"height\": 1}]}",
+      "t.json:1: obstacles.0.height: unknown key");
   // The version comes first: what follows may be of a later one.
   refused("{\"zzz\": 1,\n\"version\": 2}", "t.json:2: version: must be 1, got 2");
 }
@@ -250,9 +264,11 @@ static void test_boxes_must_make_sense(void **state) {
           "t.json:3: fluid.0: min must be less than max, but in y 0 is not less than 0");
   refused("{\"version\": 1, \"fluid\": [{\"min\": [4, 0, 0], \"max\": [5, 1, 1]}]}",
           "t.json:1: fluid.0: lies outside the container");
-  refused("{\"version\": 1, \"fluid\": [{\"min\": [0,0,0], \"max\": [1,1,1]},\n{\"min\": [0.9,0,0], \"max\": [2,1,1]}]}",
-          "t.json:2: fluid.1: overlaps fluid.0");
-  refused("{\"version\": 1, \"simulation\": {\"particle_radius\": 0.001}, \"fluid\": [{\"min\": [0,0,0], \"max\": [1,1,1]}]}",
+  refused(
+      "{\"version\": 1, \"fluid\": [{\"min\": [0,0,0], \"max\": [1,1,1]},\n{\"min\": [0.9,0,0], \"max\": [2,1,1]}]}",
+      "t.json:2: fluid.1: overlaps fluid.0");
+  refused("{\"version\": 1, \"simulation\": {\"particle_radius\": 0.001}, \"fluid\": [{\"min\": [0,0,0], \"max\": "
+          "[1,1,1]}]}",
           "t.json:1: fluid.0: would hold 125000000 particles of radius 0.001 m, more than the limit of 16777216");
   refused("{\"version\": 1, \"camera\": {\"eye\": [1, 1, 1], \"target\": [1, 1, 1]}}",
           "t.json:1: camera: eye and target must not be the same point");
@@ -269,8 +285,9 @@ static void test_syntax_errors_name_line_and_cause(void **state) {
   refused("{\"version\": 01}", "t.json:1: not valid JSON: a number with a leading zero");
   refused("{\"name\": \"\\ud800\"}", "t.json:1: not valid JSON: an invalid \\u escape in a string");
   refused("{\"name\": \"\xff\"}", "t.json:1: not valid JSON: a string that is not UTF-8");
-  refused("// a scene\n{}", "t.json:1: not valid JSON: expected a value (a number, a string in \"\", true, false, null, "
-                            "[ or {), got '/' (JSON has no comments)");
+  refused("// a scene\n{}",
+          "t.json:1: not valid JSON: expected a value (a number, a string in \"\", true, false, null, "
+          "[ or {), got '/' (JSON has no comments)");
 }
 
 static void test_byte_order_mark_is_accepted(void **state) {

@@ -4,13 +4,42 @@
 
 enum { ROUNDS = 4000, MOST_TEXT = 32 * 1024 };
 
-static const char *const files[] = {"configs/dam_break.json", "configs/double_dam_break.json", "configs/still_pool.json"};
+static const char *const files[] = {"configs/dam_break.json", "configs/double_dam_break.json",
+                                    "configs/still_pool.json"};
 
 // Pieces that are more likely to hurt than random bytes.
 static const char *const pieces[] = {
-    "1e999", "-1e999", "1e-400", "-0", "null", "true", "[]", "{}", "[0,0,0]", "\"", "\\", "\"\\ud800\"", "\"x\"", "NaN",
-    "\"events\":[{\"type\":\"push\"}],", "\"type\":\"sphere\",", "\"fluid\":[{}],", "4294967296", "0.5", ",", ":", "{", "}",
-    "[", "]", "\xff", "\xc3\xa9", "\"version\":1,", "\"min\":[0,0,0],", "[[[[[[[[", "}}}}",
+    "1e999",
+    "-1e999",
+    "1e-400",
+    "-0",
+    "null",
+    "true",
+    "[]",
+    "{}",
+    "[0,0,0]",
+    "\"",
+    "\\",
+    "\"\\ud800\"",
+    "\"x\"",
+    "NaN",
+    "\"events\":[{\"type\":\"push\"}],",
+    "\"type\":\"sphere\",",
+    "\"fluid\":[{}],",
+    "4294967296",
+    "0.5",
+    ",",
+    ":",
+    "{",
+    "}",
+    "[",
+    "]",
+    "\xff",
+    "\xc3\xa9",
+    "\"version\":1,",
+    "\"min\":[0,0,0],",
+    "[[[[[[[[",
+    "}}}}",
 };
 
 // xorshift64 (Marsaglia 2003)
@@ -42,12 +71,17 @@ static size_t damage(char *text, size_t size, uint64_t *seed) {
   char copy[64];
   size_t length = below(seed, sizeof copy);
   switch (below(seed, 6)) {
-  case 0: return splice(text, size, at, 1, &byte, 1);
-  case 1: return splice(text, size, at, below(seed, 40), "", 0);
-  case 2: return splice(text, size, at, 0, piece, strlen(piece));
-  case 3: return splice(text, size, at, below(seed, 8), piece, strlen(piece));
-  case 4: return at; // cut short
-  default: // a stretch of itself somewhere else
+  case 0:
+    return splice(text, size, at, 1, &byte, 1);
+  case 1:
+    return splice(text, size, at, below(seed, 40), "", 0);
+  case 2:
+    return splice(text, size, at, 0, piece, strlen(piece));
+  case 3:
+    return splice(text, size, at, below(seed, 8), piece, strlen(piece));
+  case 4:
+    return at; // cut short
+  default:     // a stretch of itself somewhere else
     if (length > size - at) length = size - at;
     memcpy(copy, text + at, length);
     return splice(text, size, below(seed, size + 1), 0, copy, length);

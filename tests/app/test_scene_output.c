@@ -17,7 +17,8 @@ static bool same_list(const SceneField *field, const char *a, const char *b) {
   memcpy(&count_b, b + field->count_offset, sizeof count_b);
   bool same = count_a == count_b;
   for (int i = 0; same && i < count_a; i++)
-    same = same_fields(field->object, items_a + (size_t)i * field->object->size, items_b + (size_t)i * field->object->size);
+    same = same_fields(field->object, items_a + (size_t)i * field->object->size,
+                       items_b + (size_t)i * field->object->size);
   return same;
 }
 
@@ -39,20 +40,38 @@ static bool same_fields(const SceneObject *object, const char *a, const char *b)
     const char *x = a + field->offset, *y = b + field->offset;
     switch (field->type) {
     case SCENE_OBJECT:
-    case SCENE_VARIANT: same = same_fields(field->object, x, y); break;
-    case SCENE_LIST: same = same_list(field, a, b); break;
+    case SCENE_VARIANT:
+      same = same_fields(field->object, x, y);
+      break;
+    case SCENE_LIST:
+      same = same_list(field, a, b);
+      break;
     case SCENE_NUMBER:
-    case SCENE_OPTIONAL: same = same_floats(x, y, 1); break;
+    case SCENE_OPTIONAL:
+      same = same_floats(x, y, 1);
+      break;
     case SCENE_VECTOR:
     case SCENE_DIRECTION:
-    case SCENE_OPTIONAL_VECTOR: same = same_floats(x, y, 3); break;
-    case SCENE_REAL: same = *(const double *)x == *(const double *)y; break;
-    case SCENE_SEED: same = *(const uint64_t *)x == *(const uint64_t *)y; break;
+    case SCENE_OPTIONAL_VECTOR:
+      same = same_floats(x, y, 3);
+      break;
+    case SCENE_REAL:
+      same = *(const double *)x == *(const double *)y;
+      break;
+    case SCENE_SEED:
+      same = *(const uint64_t *)x == *(const uint64_t *)y;
+      break;
     case SCENE_INTEGER:
-    case SCENE_CHOICE: same = *(const int32_t *)x == *(const int32_t *)y; break;
-    case SCENE_SWITCH: same = *(const bool *)x == *(const bool *)y; break;
+    case SCENE_CHOICE:
+      same = *(const int32_t *)x == *(const int32_t *)y;
+      break;
+    case SCENE_SWITCH:
+      same = *(const bool *)x == *(const bool *)y;
+      break;
     case SCENE_TEXT:
-    case SCENE_STYLE: same = strcmp(x, y) == 0; break;
+    case SCENE_STYLE:
+      same = strcmp(x, y) == 0;
+      break;
     }
   }
   return same;
@@ -84,14 +103,15 @@ static void test_shipped_scenes_round_trip(void **state) {
 
 static void test_odd_values_round_trip(void **state) {
   (void)state;
-  Scene scene = load("{\"version\": 1, \"name\": \"\\u0001 \\\\ \\\" \\u20ac\",\n"
-                     "\"simulation\": {\"particle_radius\": 0.0123456789, \"viscosity\": 1e-30, \"duration\": 0.1},\n"
-                     "\"container\": {\"min\": [-1e-45, 1e-7, 0]},\n"
-                     "\"obstacles\": [{\"type\": \"box\", \"size\": [1e-3, 3.3333333, 1], \"position\": [-0.0, 0, 0]}],\n"
-                     "\"events\": [{\"type\": \"push\", \"time\": 0.3333333333333333, \"origin\": [0,0,0],\n"
-                     "  \"direction\": [1, 2, 3], \"acceleration\": [0,0,1]},\n"
-                     " {\"type\": \"camera\", \"eye\": [0,0,1], \"target\": [0,0,0]},\n"
-                     " {\"type\": \"tilt\", \"gravity\": [0.1, 0.2, 0.3]}]}");
+  Scene scene =
+      load("{\"version\": 1, \"name\": \"\\u0001 \\\\ \\\" \\u20ac\",\n"
+           "\"simulation\": {\"particle_radius\": 0.0123456789, \"viscosity\": 1e-30, \"duration\": 0.1},\n"
+           "\"container\": {\"min\": [-1e-45, 1e-7, 0]},\n"
+           "\"obstacles\": [{\"type\": \"box\", \"size\": [1e-3, 3.3333333, 1], \"position\": [-0.0, 0, 0]}],\n"
+           "\"events\": [{\"type\": \"push\", \"time\": 0.3333333333333333, \"origin\": [0,0,0],\n"
+           "  \"direction\": [1, 2, 3], \"acceleration\": [0,0,1]},\n"
+           " {\"type\": \"camera\", \"eye\": [0,0,1], \"target\": [0,0,0]},\n"
+           " {\"type\": \"tilt\", \"gravity\": [0.1, 0.2, 0.3]}]}");
   check_round_trip(&scene);
   scene_free(&scene);
   // The comparison can fail.
@@ -172,10 +192,14 @@ static void test_printable_text(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_shipped_scenes_round_trip),    cmocka_unit_test(test_odd_values_round_trip),
-      cmocka_unit_test(test_schema_file_is_up_to_date),    cmocka_unit_test(test_reference_file_is_up_to_date),
-      cmocka_unit_test(test_scenes_are_found_by_name),     cmocka_unit_test(test_a_missing_scene_suggests_one),
-      cmocka_unit_test(test_nearest_name),                 cmocka_unit_test(test_printable_text),
+      cmocka_unit_test(test_shipped_scenes_round_trip),
+      cmocka_unit_test(test_odd_values_round_trip),
+      cmocka_unit_test(test_schema_file_is_up_to_date),
+      cmocka_unit_test(test_reference_file_is_up_to_date),
+      cmocka_unit_test(test_scenes_are_found_by_name),
+      cmocka_unit_test(test_a_missing_scene_suggests_one),
+      cmocka_unit_test(test_nearest_name),
+      cmocka_unit_test(test_printable_text),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

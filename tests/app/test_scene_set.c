@@ -1,7 +1,8 @@
 // --set key.path=value: any key of a scene can be changed, and a mistake names the --set as its place.
 #include "scene_helpers.h"
 
-static const char *const base = "{\"version\": 1, \"fluid\": [{\"min\": [0,0,0], \"max\": [1,1,1]}],\n \"name\": \"base\"}";
+static const char *const base =
+    "{\"version\": 1, \"fluid\": [{\"min\": [0,0,0], \"max\": [1,1,1]}],\n \"name\": \"base\"}";
 
 enum { MOST_SETS = 4 };
 
@@ -85,7 +86,8 @@ static void test_mistakes_name_the_set(void **state) {
       {{"simulation.clf=1"}, "--set simulation.clf=1: simulation.clf: unknown key, did you mean \"cfl\"?"},
       {{"render.style=cartoon"},
        "--set render.style=cartoon: render.style: \"cartoon\" is not available in this version; available: points"},
-      {{"fluid.0.min=[2,0,0]"}, "--set fluid.0.min=[2,0,0]: fluid.0: min must be less than max, but in x 2 is not less than 1"},
+      {{"fluid.0.min=[2,0,0]"},
+       "--set fluid.0.min=[2,0,0]: fluid.0: min must be less than max, but in x 2 is not less than 1"},
       {{"fluid.5.min=[2,0,0]"}, "--set fluid.5.min=[2,0,0]: the list has 1 items, the next would be 1"},
       {{"fluid.x=1"}, "--set fluid.x=1: a list needs an index (0, 1, 2 ...), got x"},
       {{"name.first=1"}, "--set name.first=1: there is nothing inside a single value to set: first"},
