@@ -54,13 +54,7 @@ static Box scene_box(const RenderPicture *picture) {
   Box box = {{FLT_MAX, FLT_MAX, FLT_MAX}, {-FLT_MAX, -FLT_MAX, -FLT_MAX}};
   if (frame->has_container) box_add(&box, frame->container.min, frame->container.max);
   if (box.min[0] > box.max[0]) box_add(&box, picture->particles.bounds_min, picture->particles.bounds_max);
-  for (int32_t i = 0; i < frame->obstacle_count; ++i) {
-    const SimObstacle *o = &frame->obstacles[i];
-    const float reach = 0.5f * sqrtf(o->size[0] * o->size[0] + o->size[1] * o->size[1] + o->size[2] * o->size[2]);
-    const float min[3] = {o->position[0] - reach, o->position[1] - reach, o->position[2] - reach};
-    const float max[3] = {o->position[0] + reach, o->position[1] + reach, o->position[2] + reach};
-    box_add(&box, min, max);
-  }
+  box_add(&box, picture->obstacles.bounds_min, picture->obstacles.bounds_max);
   if (box.min[0] > box.max[0]) box_add(&box, (vec3){0, 0, 0}, (vec3){1, 1, 1});
   for (int k = 0; k < 3 && margin > 0 && margin < 1e3f; ++k) {
     box.min[k] -= margin;
@@ -129,7 +123,7 @@ static void write_defines(RenderPicture *picture) {
   static const char *const floors[] = {"FLOOR_TILES", "FLOOR_CHECKER", "FLOOR_NONE"};
   const bool shadow = s->sun && s->shadow;
   const bool water = picture->particles.count > 0;
-  const bool solids = picture->frame->obstacle_count > 0;
+  const bool solids = picture->obstacles.count > 0;
   snprintf(picture->defines, sizeof picture->defines, "#define %s 1\n#define %s 1\n%s%s", skies[s->sky],
            floors[s->floor], shadow && water ? "#define WATER_SHADOW 1\n" : "",
            shadow && solids ? "#define SOLID_SHADOW 1\n" : "");

@@ -92,6 +92,9 @@ bool gpu_create(Gpu *gpu, RenderError *error) {
 }
 
 void gpu_destroy(Gpu *gpu) {
+  // What is still in use would outlive its deletion.
+  glUseProgram(0);
+  glBindVertexArray(0);
   for (int i = 0; i < GPU_MAX_PASSES; ++i) glDeleteQueries(2, gpu->passes[i].query);
   glDeleteBuffers(1, &gpu->params);
   glDeleteVertexArrays(1, &gpu->vertex_array);

@@ -1,7 +1,8 @@
 // Programs from the shader files that CMake has put into the library.
 //
-// Includes are resolved here. Every piece of source keeps its file's number in a #line directive, so that the compiler's
-// "2:17: error" can be turned back into "water.glsl:17: error".
+// Includes are resolved here. Line n of file f is called line f·LINES_PER_FILE + n by #line directives, so that the
+// compiler's "0:20017: error" can be turned back into "water.glsl:17: error". (GLSL's own source-string numbers would be
+// the natural way, but Mesa reports them wrongly after an included file.)
 #include "render/gpu.h"
 
 #include <ctype.h>
@@ -12,8 +13,9 @@
 
 #define MAX_FILES 32 // files that make up one program
 #define MAX_DEPTH 8  // of includes within includes
+#define LINES_PER_FILE 10000
 
-// The source of one stage as it grows, and the files that it came from: files[i] has number i in #line.
+// The source of one stage as it grows, and the files that it came from: files[i] has the lines from i·LINES_PER_FILE.
 typedef struct Assembly {
   const GpuSource *sources;
   char *text;
@@ -43,7 +45,7 @@ static void append(Assembly *a, const char *text, size_t length) {
 
 static void append_line_directive(Assembly *a, int line, int file) {
   char directive[48];
-  const int length = snprintf(directive, sizeof directive, "#line %d %d\n", line, file);
+  const int length = snprintf(directive, sizeof directive, "#line %d\n", file * LINES_PER_FILE + line);
   append(a, directive, (size_t)length);
 }
 
@@ -121,17 +123,19 @@ static bool assemble(Assembly *a, const GpuProgramDesc *desc, const char *stage_
 // ---- Compiling -------------------------------------------------------------------------------------------------------
 
 // A compiler's first complaint begins "0:12(5): error: …" (Mesa), "0(12) : error …" (NVIDIA) or "ERROR: 0:12: …"
-// (AMD, Intel): file number, line, text.
+// (AMD, Intel): a number that says nothing, the line, the text.
 static bool fail_with_log(const Assembly *a, const GpuProgramDesc *desc, const char *log, RenderError *error) {
   const char *place = log;
   while (*place != '\0' && !isdigit((unsigned char)*place)) ++place;
-  int file = 0, line = 0, length = 0;
-  if (sscanf(place, "%d%*1[:(]%d%n", &file, &line, &length) < 2 || file < 0 || file >= a->file_count) {
+  int line = 0, length = 0;
+  const int found = sscanf(place, "%*d%*1[:(]%d%n", &line, &length);
+  const int file = line / LINES_PER_FILE;
+  if (found < 1 || line < 0 || file >= a->file_count) {
     return gpu_fail(error, "shader \"%s\" (%s): %s", desc->label, desc->file, log);
   }
   const char *text = place + length;
   text += strspn(text, "():0123456789 ");
-  return gpu_fail(error, "%s:%d: %.*s", a->files[file], line, (int)strcspn(text, "\n"), text);
+  return gpu_fail(error, "%s:%d: %.*s", a->files[file], line % LINES_PER_FILE, (int)strcspn(text, "\n"), text);
 }
 
 static bool compile_stage(GLuint program, GLenum stage, const char *stage_define, const GpuProgramDesc *desc,

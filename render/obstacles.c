@@ -1,6 +1,7 @@
 // Obstacles from the frame to the GPU. Like particles, they may be absurd; those are left out.
 #include "render/picture.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -42,15 +43,32 @@ static bool body_from_obstacle(Body *body, const SimObstacle *o) {
   return true;
 }
 
+// The box around a ball that holds the body however it is turned.
+static void add_to_bounds(RenderObstacles *obstacles, const Body *body) {
+  const float *half = body->half_size;
+  const float reach = sqrtf(half[0] * half[0] + half[1] * half[1] + half[2] * half[2]);
+  for (int k = 0; k < 3; ++k) {
+    obstacles->bounds_min[k] = fminf(obstacles->bounds_min[k], body->position[k] - reach);
+    obstacles->bounds_max[k] = fmaxf(obstacles->bounds_max[k], body->position[k] + reach);
+  }
+}
+
 bool render_obstacles_upload(RenderPicture *picture, RenderError *error) {
   const SimFrame *frame = picture->frame;
   RenderObstacles *obstacles = &picture->obstacles;
   obstacles->count = 0;
+  for (int k = 0; k < 3; ++k) {
+    obstacles->bounds_min[k] = FLT_MAX;
+    obstacles->bounds_max[k] = -FLT_MAX;
+  }
   if (frame->obstacle_count <= 0 || frame->obstacles == NULL) return true;
   Body *bodies = malloc(sizeof *bodies * (size_t)frame->obstacle_count);
   if (bodies == NULL) return gpu_fail(error, "out of memory for %d obstacles", frame->obstacle_count);
   for (int32_t i = 0; i < frame->obstacle_count; ++i) {
-    if (body_from_obstacle(&bodies[obstacles->count], &frame->obstacles[i])) ++obstacles->count;
+    Body *body = &bodies[obstacles->count];
+    if (!body_from_obstacle(body, &frame->obstacles[i])) continue;
+    add_to_bounds(obstacles, body);
+    ++obstacles->count;
   }
   const size_t size = sizeof *bodies * (size_t)obstacles->count;
   const bool written = gpu_buffer_write(&obstacles->bodies, "obstacles", bodies, size, error);

@@ -47,6 +47,7 @@ void render_particles_destroy(RenderParticles *particles);
 typedef struct RenderObstacles {
   GpuBuffer bodies;            // (count) struct Body
   int32_t count;
+  float bounds_min[3], bounds_max[3]; // m; min > max when there are none
 } RenderObstacles;
 
 /// The scene as the sun sees it, from infinitely far away.

@@ -89,7 +89,6 @@ static bool draw_solids(RenderPicture *picture, RenderError *error) {
   if (!gpu_program_prepare(&map->solid_program, &desc, error)) return false;
   const float nothing[4] = {-1e9f, 0, 0, 0};
   gpu_clear_colour(&map->solid_target, 0, nothing);
-  if (picture->obstacles.count == 0) return true;
   gpu_draw(picture->gpu, &(GpuDraw){
                              .program = &map->solid_program,
                              .target = &map->solid_target,
@@ -103,7 +102,7 @@ static bool draw_solids(RenderPicture *picture, RenderError *error) {
 bool render_sun_map_draw(RenderPicture *picture, RenderError *error) {
   const RenderSettings *settings = picture->settings;
   if (!settings->sun || !settings->shadow) return true;
-  if (picture->frame->obstacle_count > 0 && !draw_solids(picture, error)) return false;
+  if (picture->obstacles.count > 0 && !draw_solids(picture, error)) return false;
   if (picture->particles.count == 0) return true;
   if (!prepare_smoothing(&picture->sun_map, error)) return false;
   if (!render_splat_sun(picture, &picture->sun_map.water_program, settings->points.scale,

@@ -1,0 +1,112 @@
+#include "tests/render/harness.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+Harness harness_open(ContextKind kind, int32_t width, int32_t height) {
+  Harness harness = {.width = width, .height = height};
+  AppError app_error = {0};
+  harness.context = context_create_headless(kind, &app_error);
+  if (harness.context == NULL) fail_msg("%s", app_error.message);
+  RenderError error = {0};
+  harness.render = render_create(width, height, &error);
+  if (harness.render == NULL) fail_msg("%s", error.message);
+  return harness;
+}
+
+void harness_close(Harness *harness) {
+  assert_int_equal(render_gl_error_count(harness->render), 0);
+  render_destroy(harness->render);
+  context_destroy(harness->context);
+  *harness = (Harness){0};
+}
+
+RenderSettings harness_pinned_settings(void) {
+  RenderSettings settings = render_default_settings();
+  settings.sun = false;
+  settings.shadow = false;
+  settings.sky = RENDER_SKY_GRADIENT;
+  settings.floor = RENDER_FLOOR_CHECKER;
+  settings.floor_level = 0;
+  settings.container_visible = false;
+  settings.tone_map = RENDER_TONE_NONE;
+  return settings;
+}
+
+RenderView harness_view(float ex, float ey, float ez, float tx, float ty, float tz, float fov) {
+  return (RenderView){{ex, ey, ez}, {tx, ty, tz}, fov};
+}
+
+uint8_t *harness_draw(Harness *harness, const SimFrame *frame, const RenderView *view, const RenderSettings *settings) {
+  RenderError error = {0};
+  if (!render_draw(harness->render, frame, view, settings, &error)) fail_msg("%s", error.message);
+  uint8_t *rgb = malloc(3 * (size_t)harness->width * (size_t)harness->height);
+  assert_non_null(rgb);
+  render_read_rgb8(harness->render, rgb);
+  return rgb;
+}
+
+float *harness_layer(Harness *harness, const char *layer, int32_t channels, const SimFrame *frame,
+                     const RenderView *view, const RenderSettings *settings) {
+  assert_true(render_show_layer(harness->render, layer));
+  free(harness_draw(harness, frame, view, settings));
+  int32_t count = 0;
+  assert_true(render_read_layer(harness->render, NULL, &count));
+  assert_int_equal(count, channels);
+  float *values = malloc(sizeof(float) * (size_t)count * (size_t)harness->width * (size_t)harness->height);
+  assert_non_null(values);
+  assert_true(render_read_layer(harness->render, values, &count));
+  assert_true(render_show_layer(harness->render, NULL));
+  return values;
+}
+
+// ---- The camera's truth, in double precision -------------------------------------------------------------------------
+
+static void cross(double out[3], const double a[3], const double b[3]) {
+  out[0] = a[1] * b[2] - a[2] * b[1];
+  out[1] = a[2] * b[0] - a[0] * b[2];
+  out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+static double dot(const double a[3], const double b[3]) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static void normalize(double v[3]) {
+  const double length = sqrt(dot(v, v));
+  for (int k = 0; k < 3; ++k) v[k] /= length;
+}
+
+Ray harness_ray(const RenderView *view, int32_t width, int32_t height, int32_t x, int32_t y) {
+  double gaze[3], right[3], up[3];
+  const double y_axis[3] = {0, 1, 0};
+  for (int k = 0; k < 3; ++k) gaze[k] = (double)view->target[k] - (double)view->eye[k];
+  normalize(gaze);
+  cross(right, gaze, y_axis);
+  normalize(right);
+  cross(up, right, gaze);
+  const double tan_y = tan((double)view->vertical_fov * 3.14159265358979323846 / 360);
+  const double tan_x = tan_y * width / height;
+  const double px = tan_x * (2 * (x + 0.5) / width - 1), py = tan_y * (1 - 2 * (y + 0.5) / height);
+  Ray ray;
+  for (int k = 0; k < 3; ++k) {
+    ray.origin[k] = (double)view->eye[k];
+    ray.direction[k] = gaze[k] + px * right[k] + py * up[k];
+  }
+  return ray;
+}
+
+bool harness_ray_sphere(const Ray *ray, const float centre[3], double radius, double t[2], double *margin) {
+  double to_centre[3], foot[3];
+  for (int k = 0; k < 3; ++k) to_centre[k] = (double)centre[k] - ray->origin[k];
+  const double dd = dot(ray->direction, ray->direction);
+  const double middle = dot(to_centre, ray->direction) / dd;
+  for (int k = 0; k < 3; ++k) foot[k] = ray->direction[k] * middle - to_centre[k];
+  const double distance = sqrt(dot(foot, foot));
+  *margin = 1 - distance / radius;
+  if (distance >= radius) return false;
+  const double half = sqrt((radius * radius - distance * distance) / dd);
+  t[0] = middle - half;
+  t[1] = middle + half;
+  return true;
+}

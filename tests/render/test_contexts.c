@@ -1,0 +1,102 @@
+// The same frame under different contexts is the same picture.
+#include "tests/render/harness.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define WIDTH 480
+#define HEIGHT 270
+
+static uint8_t *picture_under(ContextKind kind) {
+  Harness harness = harness_open(kind, WIDTH, HEIGHT);
+  TestFrame *t = test_frame_pool();
+  t->frame.obstacle_count = 2;
+  t->obstacles[0] = (SimObstacle){SIM_SPHERE, {0.4f, 0, 0}, {1.2f, 0.35f, 0.5f}, {0, 0, 0, 1}, {0.8f, 0.7f, 0.3f}};
+  t->obstacles[1] = (SimObstacle){SIM_CYLINDER, {0.2f, 1, 0}, {2.3f, 0.5f, 0.4f}, {0, 0, 0, 1}, {0.7f, 0.7f, 0.7f}};
+  const RenderView view = harness_view(0.35f, 1.2f, 4.1f, 1.5f, 0.55f, 0.4f, 38);
+  const RenderSettings settings = render_default_settings();
+  uint8_t *rgb = harness_draw(&harness, &t->frame, &view, &settings);
+  test_frame_destroy(t);
+  harness_close(&harness);
+  return rgb;
+}
+
+static void test_egl_and_osmesa_agree(void **state) {
+  (void)state;
+  char why[256];
+  for (int kind = CONTEXT_EGL; kind <= CONTEXT_OSMESA; ++kind) {
+    const ContextBackend *backend = context_backend_of_kind((ContextKind)kind);
+    assert_non_null(backend);
+    if (!backend->available(why, sizeof why)) {
+      print_message("%s: %s\n", backend->name, why);
+      skip();
+    }
+  }
+  uint8_t *egl = picture_under(CONTEXT_EGL), *osmesa = picture_under(CONTEXT_OSMESA);
+  int different = 0;
+  for (int i = 0; i < WIDTH * HEIGHT; ++i) {
+    bool same = true;
+    for (int k = 0; k < 3; ++k) same = same && abs(egl[3 * i + k] - osmesa[3 * i + k]) <= 2;
+    different += !same;
+  }
+  if (different * 200 > WIDTH * HEIGHT)
+    fail_msg("%d of %d pixels differ by more than 2/255", different, WIDTH * HEIGHT);
+  free(egl);
+  free(osmesa);
+}
+
+// One after the other, in any order: the pointers that OSMesa needs are put back.
+static void test_contexts_follow_each_other(void **state) {
+  (void)state;
+  char why[256];
+  for (int round = 0; round < 2; ++round) {
+    for (int i = 0; i < context_backend_count(); ++i) {
+      const ContextBackend *backend = context_backend(i);
+      if (!backend->available(why, sizeof why)) {
+        assert_true(why[0] != '\0' && strchr(why, '\n') == NULL);
+        continue;
+      }
+      Harness harness = harness_open(backend->kind, 16, 16);
+      assert_non_null(strstr(render_gl_description(harness.render), " / "));
+      harness_close(&harness);
+    }
+  }
+}
+
+static void test_the_table(void **state) {
+  (void)state;
+  assert_null(context_backend(-1));
+  assert_null(context_backend(context_backend_count()));
+  assert_null(context_backend_of_kind(CONTEXT_AUTO));
+  for (int i = 0; i < context_backend_count(); ++i) {
+    assert_ptr_equal(context_backend_of_kind(context_backend(i)->kind), context_backend(i));
+    assert_non_null(context_backend(i)->summary);
+  }
+}
+
+// A driver below 4.5 is turned away in one sentence. Mesa can be told to play one.
+static void test_old_opengl_is_refused_in_one_sentence(void **state) {
+  (void)state;
+  char why[256];
+  if (!context_backend_of_kind(CONTEXT_EGL)->available(why, sizeof why)) skip();
+  setenv("MESA_GL_VERSION_OVERRIDE", "3.3", 1);
+  AppError error = {0};
+  Context *context = context_create_headless(CONTEXT_EGL, &error);
+  unsetenv("MESA_GL_VERSION_OVERRIDE");
+  if (context != NULL) { // not Mesa
+    context_destroy(context);
+    skip();
+  }
+  assert_int_equal(error.code, APP_FAILED);
+  assert_non_null(strstr(error.message, "4.5"));
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_the_table),
+      cmocka_unit_test(test_egl_and_osmesa_agree),
+      cmocka_unit_test(test_contexts_follow_each_other),
+      cmocka_unit_test(test_old_opengl_is_refused_in_one_sentence),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
