@@ -13,4 +13,9 @@ if(Python3_FOUND)
            WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
   # One display, one mouse, and the figures depend on time: not beside other tests.
   set_tests_properties(app_window PROPERTIES SKIP_RETURN_CODE 77 TIMEOUT 600 RUN_SERIAL ON)
+  if(LIDO_SANITIZE MATCHES address)
+    add_library(app_keep_libraries MODULE keep_libraries.c)
+    set_tests_properties(app_window PROPERTIES
+      ENVIRONMENT "LD_PRELOAD=$<TARGET_FILE:app_keep_libraries>;ASAN_OPTIONS=verify_asan_link_order=0")
+  endif()
 endif()
