@@ -7,6 +7,12 @@ add_library(lido_test_runner STATIC run_lido.c)
 target_link_libraries(lido_test_runner PRIVATE lido_flags cmocka)
 target_compile_definitions(lido_test_runner PRIVATE LIDO_PROGRAM="$<TARGET_FILE:lido>")
 add_dependencies(lido_test_runner lido)
+if(LIDO_SANITIZE MATCHES address)
+  # See keep_libraries.c; made in window.cmake.
+  target_compile_definitions(lido_test_runner PRIVATE LIDO_PRELOAD="$<TARGET_FILE:app_keep_libraries>"
+                             LIDO_SUPPRESSIONS="${PROJECT_SOURCE_DIR}/tests/lsan.supp")
+  add_dependencies(lido_test_runner app_keep_libraries)
+endif()
 
 foreach(subject output image particle_file files_cli simulate_cli render_cli)
   lido_add_test(app_${subject} SOURCES test_${subject}.c LIBRARIES lido_test_runner lido_app PkgConfig::FILES_CJSON

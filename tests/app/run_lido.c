@@ -98,6 +98,11 @@ bool files_equal(const char *a, const char *b) {
 static void child(const LidoRun *run, const char *const *arguments, int out, int err) {
   const char *argv[64] = {LIDO_PROGRAM};
   for (int i = 0; arguments[i] && i < 62; i++) argv[i + 1] = arguments[i];
+#ifdef LIDO_PRELOAD
+  setenv("LD_PRELOAD", LIDO_PRELOAD, 1);
+  setenv("ASAN_OPTIONS", "verify_asan_link_order=0", 1);
+  setenv("LSAN_OPTIONS", "print_suppressions=0:suppressions=" LIDO_SUPPRESSIONS, 1);
+#endif
   if (run->path_variable) setenv("PATH", run->path_variable, 1);
   if (run->file_size_limit) {
     struct rlimit limit = {run->file_size_limit, run->file_size_limit};
