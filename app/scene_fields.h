@@ -141,7 +141,7 @@
 #define SCENE_LIGHT(F, O, L, V, S) \
   F(S, DIRECTION, direction,       "",         "[-1000, 1000]",    "[-0.45, 0.75, 0.5]", \
     "Towards the sun; any length.") \
-  F(S, VECTOR,    colour,          "linear",   "[0, 1000]",        "[3, 2.85, 2.58]", \
+  F(S, VECTOR,    colour,          "linear",   "[0, 1000]",        "[3.6, 3.35, 2.95]", \
     "Irradiance of the sun.") \
   F(S, SWITCH,    sun,             "",         "",                 "true", \
     "Off: neither sunlight nor glints.") \
@@ -173,7 +173,7 @@
     "none: pictures hold 255 × the linear value, for measurements.") \
   F(S, NUMBER,    exposure,        "",         "[0.001, 1000]",       "1", \
     "Factor before the tone curve.") \
-  F(S, VECTOR,    absorption,      "1/m",      "[0, 10000]",       "[3, 0.75, 0.55]", \
+  F(S, VECTOR,    absorption,      "1/m",      "[0, 10000]",       "[3.2, 0.68, 0.46]", \
     "How strongly the water takes away red, green and blue light.") \
   F(S, NUMBER,    refractive_index, "",        "[1, 3]",           "1.333", \
     "Of the water.") \

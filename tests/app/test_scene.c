@@ -3,6 +3,8 @@
 
 #include <math.h>
 
+#include "render/settings.h"
+
 static const char *const whole = //
     "{\n"
     "  \"version\": 1, \"name\": \"A \\u00e9 \\\"quoted\\\" name\",\n"
@@ -193,6 +195,74 @@ static void test_rows_of_the_table_make_sense(void **state) {
   check_rows(&scene_top);
 }
 
+/// Create a world from the scene; whether the simulator takes it.
+static bool simulator_takes(const Scene *scene) {
+  SimWorldDef def = scene_world_def(scene);
+  def.threads = 1;
+  SimError error;
+  SimWorld *world = sim_world_create(&def, &error);
+  sim_world_destroy(world);
+  return world != NULL;
+}
+
+/// Whether the simulator takes the scene with one number changed.
+static bool takes_number(const SceneField *field, double value, float towards) {
+  Scene scene = load("{\"version\": 1, \"container\": {\"min\": [0, 0, 0], \"max\": [15, 15, 15]}}");
+  char *member = (char *)&scene.simulation + field->offset;
+  if (field->type == SCENE_INTEGER)
+    *(int32_t *)member = (int32_t)value + (towards < (float)value ? -1 : towards > (float)value ? 1 : 0);
+  else
+    *(float *)member = nextafterf((float)value, towards);
+  bool takes = simulator_takes(&scene);
+  scene_free(&scene);
+  return takes;
+}
+
+static void test_ranges_are_those_of_the_simulator(void **state) {
+  (void)state;
+  const SceneObject *object = scene_field_find(&scene_top, "simulation")->object;
+  int checked = 0;
+  for (int i = 0; i < object->field_count; i++) {
+    const SceneField *field = &object->fields[i];
+    // The table allows less time per step than the simulator would.
+    if ((field->type != SCENE_NUMBER && field->type != SCENE_INTEGER) || strcmp(field->key, "time_step") == 0) continue;
+    SceneInterval interval = scene_interval(field);
+    if (!takes_number(field, interval.low, (float)interval.low)) fail_msg("%s: low end refused", field->key);
+    if (!takes_number(field, interval.high, (float)interval.high)) fail_msg("%s: high end refused", field->key);
+    if (takes_number(field, interval.low, -INFINITY)) fail_msg("%s: less than the low end taken", field->key);
+    if (takes_number(field, interval.high, INFINITY)) fail_msg("%s: more than the high end taken", field->key);
+    checked++;
+  }
+  assert_int_equal(checked, 9);
+}
+
+/// Both ends of every range of light, environment and render must suit the renderer.
+static void test_ranges_suit_the_renderer(void **state) {
+  (void)state;
+  const char *const objects[] = {"light", "environment", "render"};
+  int checked = 0;
+  for (size_t o = 0; o < sizeof objects / sizeof *objects; o++) {
+    const SceneField *owner = scene_field_find(&scene_top, objects[o]);
+    for (int i = 0; i < owner->object->field_count; i++) {
+      const SceneField *field = &owner->object->fields[i];
+      bool vector = field->type == SCENE_VECTOR || field->type == SCENE_DIRECTION;
+      if (!vector && field->type != SCENE_NUMBER && field->type != SCENE_OPTIONAL) continue;
+      SceneInterval interval = scene_interval(field);
+      for (int end = 0; end < 2; end++) {
+        Scene scene = load("{\"version\": 1}");
+        float *member = (float *)((char *)&scene + owner->offset + field->offset);
+        for (int k = 0; k < (vector ? 3 : 1); k++) member[k] = (float)(end ? interval.high : interval.low);
+        RenderSettings settings = scene_render_settings(&scene);
+        RenderError error;
+        if (!render_settings_check(&settings, &error)) fail_msg("%s.%s: %s", objects[o], field->key, error.message);
+        scene_free(&scene);
+        checked++;
+      }
+    }
+  }
+  assert_true(checked >= 20);
+}
+
 static void test_camera_is_found_when_none_is_given(void **state) {
   (void)state;
   Scene scene = load("{\"version\": 1, \"container\": {\"min\": [10, 0, 0], \"max\": [11, 1, 2]}}");
@@ -306,6 +376,8 @@ int main(void) {
       cmocka_unit_test(test_defaults_are_those_of_the_libraries),
       cmocka_unit_test(test_names_in_the_table_stand_for_the_right_values),
       cmocka_unit_test(test_rows_of_the_table_make_sense),
+      cmocka_unit_test(test_ranges_are_those_of_the_simulator),
+      cmocka_unit_test(test_ranges_suit_the_renderer),
       cmocka_unit_test(test_camera_is_found_when_none_is_given),
       cmocka_unit_test(test_messages_name_line_path_and_cause),
       cmocka_unit_test(test_keys_are_known_and_stand_once),
