@@ -32,6 +32,7 @@ typedef struct SimCubic {
   float volume;         ///< m³, V: within a few percent of spacing³
   float value_scale;    ///< V · 8/(πh³): V W(0)
   float gradient_scale; ///< 1/m, V · 8/(πh⁴)
+  float omega;          ///< damping of a Jacobi iteration on densities with this kernel
   float lattice_gradient; ///< 1/m², Σ |V ∇W|² over the neighbours in the lattice: the S of REFERENCE's scale-free ε and k
 } SimCubic;
 

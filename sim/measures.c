@@ -6,15 +6,20 @@
 #include "sim/world.h"
 
 // A particle whose density gradient is longer than this, times the spacing, lies at the free surface: inside it is near
-// 0, at a flat surface about one half.
+// 0, at a flat surface about one half. So does one with so few neighbours that their sum says nothing: a drop, a thread.
 #define SURFACE_ASYMMETRY 0.2f
+#define SURFACE_DENSITY 0.8f
+
+static bool at_surface(const SimParticles *p, int64_t i) {
+  return p->asymmetry[i] > SURFACE_ASYMMETRY || p->density[i] < SURFACE_DENSITY;
+}
 
 static bool away_from_surface(const SimWorld *world, int32_t i) {
   const SimParticles *p = &world->particles;
   const SimNeighbours *lists = &world->neighbours;
-  if (p->asymmetry[i] > SURFACE_ASYMMETRY) return false;
-  for (uint32_t k = lists->start[i]; k < lists->start[i + 1]; k++)
-    if (p->asymmetry[lists->index[k]] > SURFACE_ASYMMETRY) return false;
+  if (at_surface(p, i)) return false;
+  for (uint32_t k = lists->start[i]; k < lists->end[i]; k++)
+    if (at_surface(p, lists->index[k])) return false;
   return true;
 }
 

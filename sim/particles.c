@@ -6,7 +6,7 @@
 #include "sim/memory.h"
 
 #define SORTED_ARRAYS 13
-#define WORK_ARRAYS 10
+#define WORK_ARRAYS 13
 
 static void list_sorted(SimSorted *sorted, void ***list) {
   for (int k = 0; k < 3; k++) {
@@ -27,6 +27,7 @@ static void list_work(SimParticles *particles, void ***list) {
   list[7] = (void **)&particles->lambda;
   list[8] = (void **)&particles->asymmetry;
   list[9] = (void **)&particles->solid;
+  for (int k = 0; k < 3; k++) list[10 + k] = (void **)&particles->repulsion[k];
 }
 
 bool sim_particles_reserve(SimParticles *particles, int32_t capacity) {

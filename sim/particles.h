@@ -20,6 +20,7 @@ typedef struct SimParticles {
   float *scratch[3];       ///< new positions or velocities of a Jacobi sweep
   float *density;          ///< share of the rest density, written by pbf_density
   float *lambda;           ///< m², written by pbf_density
+  float *repulsion[3];     ///< m, Σ s_corr ∇W, likewise
   float *asymmetry;        ///< |∇C| · spacing: 0 inside, about ½ at a flat free surface; written by pbf_density
   float *solid;            ///< the walls' share of the density, written by boundary
   float *solid_gradient[3]; ///< 1/m, likewise

@@ -2,6 +2,7 @@
 #include "sim/solver_pbf.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "sim/parallel.h"
 
@@ -43,6 +44,41 @@ void sim_pbf_predict(const SimStep *step) {
   sim_parallel_for(step->threads, step->particles->count, predict_kernel, step);
 }
 
+// ---- Pairs -----------------------------------------------------------------------------------------------------------
+
+// A neighbour list is worked off in pieces of up to PIECE: first the differences are gathered, then the kernel is
+// evaluated in a loop without branches that the compiler turns into vector instructions, then the sums are taken in
+// LANES interleaved parts. The order of all additions is fixed, whatever the instruction set. What is left of a piece up
+// to a multiple of LANES is filled with pairs that are too far apart to count.
+#define PIECE 64
+#define LANES 4
+
+typedef struct Pairs {
+  int32_t count; ///< a multiple of LANES
+  float dx[PIECE], dy[PIECE], dz[PIECE];
+} Pairs;
+
+static void gather_pairs(Pairs *pairs, float *const position[3], int32_t i, const uint32_t *index, int32_t count,
+                         float far) {
+  const float *x = position[0], *y = position[1], *z = position[2];
+  float px = x[i], py = y[i], pz = z[i];
+  for (int32_t k = 0; k < count; k++) {
+    uint32_t j = index[k];
+    pairs->dx[k] = px - x[j];
+    pairs->dy[k] = py - y[j];
+    pairs->dz[k] = pz - z[j];
+  }
+  pairs->count = (count + LANES - 1) / LANES * LANES;
+  for (int32_t k = count; k < pairs->count; k++) {
+    pairs->dx[k] = far;
+    pairs->dy[k] = pairs->dz[k] = 0;
+  }
+}
+
+static float lane_sum(const float lane[LANES]) {
+  return (lane[0] + lane[1]) + (lane[2] + lane[3]);
+}
+
 // ---- Density and λ ---------------------------------------------------------------------------------------------------
 
 static void boundary_kernel(int32_t begin, int32_t end, const void *context) {
@@ -59,36 +95,70 @@ void sim_pbf_boundary(const SimStep *step) {
   sim_parallel_for(step->threads, step->particles->count, boundary_kernel, step);
 }
 
-// λ = −C / (Σ_k |∇_k C|² + ε), Eq. 11. The gradient with respect to i itself includes the walls; walls do not move, so
+/// Sums over the neighbours of one particle, in LANES parts.
+typedef struct DensitySums {
+  float density[LANES], squares[LANES];
+  float gradient[3][LANES];  ///< Σ V ∇W
+  float repulsion[3][LANES]; ///< Σ s_corr V ∇W
+} DensitySums;
+
+static void add_density(DensitySums *sums, const Pairs *pairs, const SimStep *step, float *over_r) {
+  const SimCubic cubic = step->cubic;
+  float w[PIECE], g[PIECE], s[PIECE];
+  float inverse_reference = 1 / sim_cubic_value(&cubic, 0.2f * cubic.h), tensile = step->tensile;
+  float tiny = 1e-6f * cubic.spacing; // two particles in one place push each other nowhere; they do not divide by zero
+  for (int32_t k = 0; k < pairs->count; k++) {
+    float dx = pairs->dx[k], dy = pairs->dy[k], dz = pairs->dz[k];
+    float r = sqrtf(dx * dx + dy * dy + dz * dz);
+    w[k] = sim_cubic_value(&cubic, r);
+    g[k] = sim_cubic_gradient(&cubic, r);
+    over_r[k] = g[k] / (r > tiny ? r : tiny);
+    float ratio = w[k] * inverse_reference;
+    s[k] = -tensile * (ratio * ratio) * (ratio * ratio) * over_r[k];
+  }
+  for (int32_t k = 0; k < pairs->count; k += LANES)
+    for (int lane = 0; lane < LANES; lane++) {
+      int32_t at = k + lane;
+      sums->density[lane] += w[at];
+      sums->squares[lane] += g[at] * g[at];
+      sums->gradient[0][lane] += over_r[at] * pairs->dx[at];
+      sums->gradient[1][lane] += over_r[at] * pairs->dy[at];
+      sums->gradient[2][lane] += over_r[at] * pairs->dz[at];
+      sums->repulsion[0][lane] += s[at] * pairs->dx[at];
+      sums->repulsion[1][lane] += s[at] * pairs->dy[at];
+      sums->repulsion[2][lane] += s[at] * pairs->dz[at];
+    }
+}
+
+// λ = −ω C / (Σ_k |∇_k C|² + ε), Eq. 11. The gradient with respect to i itself includes the walls; walls do not move, so
 // they have no gradient of their own.
+static void finish_density(const SimStep *step, int32_t i, const DensitySums *sums) {
+  SimParticles *p = step->particles;
+  float density = step->cubic.value_scale + p->solid[i] + lane_sum(sums->density), own = 0, c = density - 1;
+  for (int k = 0; k < 3; k++) {
+    float gradient = p->solid_gradient[k][i] + lane_sum(sums->gradient[k]);
+    own += gradient * gradient;
+    p->repulsion[k][i] = lane_sum(sums->repulsion[k]);
+  }
+  p->density[i] = density;
+  p->asymmetry[i] = sqrtf(own) * step->cubic.spacing;
+  p->lambda[i] = c > 0 ? -step->omega * c / (lane_sum(sums->squares) + own + step->relaxation) : 0;
+}
+
 static void density_kernel(int32_t begin, int32_t end, const void *context) {
   const SimStep *step = context;
-  const SimCubic cubic = step->cubic;
-  SimParticles *p = step->particles;
-  const float *restrict x = p->now.predicted[0], *restrict y = p->now.predicted[1], *restrict z = p->now.predicted[2];
-  const uint32_t *restrict start = step->neighbours->start, *restrict index = step->neighbours->index;
-  float *restrict pair_gradient = step->neighbours->gradient;
+  const SimNeighbours *lists = step->neighbours;
+  Pairs pairs;
+  float over_r[PIECE];
   for (int32_t i = begin; i < end; i++) {
-    float px = x[i], py = y[i], pz = z[i];
-    float density = cubic.value_scale + p->solid[i], squares = 0;
-    float gx = p->solid_gradient[0][i], gy = p->solid_gradient[1][i], gz = p->solid_gradient[2][i];
-    for (uint32_t k = start[i]; k < start[i + 1]; k++) {
-      uint32_t j = index[k];
-      float dx = px - x[j], dy = py - y[j], dz = pz - z[j];
-      float r = sqrtf(dx * dx + dy * dy + dz * dz);
-      float g = sim_cubic_gradient(&cubic, r);
-      float over_r = r > 0 ? g / r : 0;
-      density += sim_cubic_value(&cubic, r);
-      squares += g * g;
-      gx += over_r * dx;
-      gy += over_r * dy;
-      gz += over_r * dz;
-      pair_gradient[k] = over_r;
+    DensitySums sums = {{0}, {0}, {{0}}, {{0}}};
+    for (uint32_t k = lists->start[i]; k < lists->end[i]; k += PIECE) {
+      uint32_t count = lists->end[i] - k < PIECE ? lists->end[i] - k : PIECE;
+      gather_pairs(&pairs, step->particles->now.predicted, i, lists->index + k, (int32_t)count, 2 * step->cubic.h);
+      add_density(&sums, &pairs, step, over_r);
+      memcpy(lists->gradient + k, over_r, count * sizeof(float));
     }
-    float own = gx * gx + gy * gy + gz * gz, c = density - 1;
-    p->density[i] = density;
-    p->asymmetry[i] = sqrtf(own) * cubic.spacing;
-    p->lambda[i] = c > 0 ? -c / (squares + own + step->relaxation) : 0;
+    finish_density(step, i, &sums);
   }
 }
 
@@ -98,34 +168,51 @@ void sim_pbf_density(const SimStep *step) {
 
 // ---- Correction ------------------------------------------------------------------------------------------------------
 
-// Δp_i = Σ_j (λ_i + λ_j + s_corr) ∇W, Eq. 14, s_corr = −k (W(r)/W(Δq))⁴, Δq = 0.2 h, Eq. 13. A wall answers with the
-// pressure of the particle itself (λ_wall = λ_i ≤ 0: it can push, never pull).
+static void add_weighted(const Pairs *pairs, const float weight[PIECE], float sum[3][LANES]) {
+  for (int32_t k = 0; k < pairs->count; k += LANES)
+    for (int lane = 0; lane < LANES; lane++) {
+      sum[0][lane] += weight[k + lane] * pairs->dx[k + lane];
+      sum[1][lane] += weight[k + lane] * pairs->dy[k + lane];
+      sum[2][lane] += weight[k + lane] * pairs->dz[k + lane];
+    }
+}
+
+// Δp_i = Σ_j (λ_i + λ_j + s_corr) ∇W, Eq. 14, s_corr = −k (W(r)/W(Δq))⁴, Δq = 0.2 h, Eq. 13 (summed up with the density).
+//
+// A wall has no λ of its own: its term is λ_i ∇f only, the gradient of what the wall adds to C_i. Mirroring the
+// particle's pressure (2 λ_i) would not be the gradient of any constraint; it drives water round and round along walls.
+static void correction(const SimStep *step, int32_t i, float move[3]) {
+  const SimParticles *p = step->particles;
+  const SimNeighbours *lists = step->neighbours;
+  Pairs pairs;
+  float sum[3][LANES] = {{0}}, factor[PIECE] = {0}, own = p->lambda[i];
+  for (uint32_t k = lists->start[i]; k < lists->end[i]; k += PIECE) {
+    uint32_t count = lists->end[i] - k < PIECE ? lists->end[i] - k : PIECE;
+    gather_pairs(&pairs, p->now.predicted, i, lists->index + k, (int32_t)count, 0);
+    for (uint32_t a = 0; a < count; a++) factor[a] = (own + p->lambda[lists->index[k + a]]) * lists->gradient[k + a];
+    for (int32_t a = (int32_t)count; a < pairs.count; a++) factor[a] = 0;
+    add_weighted(&pairs, factor, sum);
+  }
+  for (int k = 0; k < 3; k++) move[k] = lane_sum(sum[k]) + p->repulsion[k][i] + own * p->solid_gradient[k][i];
+}
+
 static void correct_kernel(int32_t begin, int32_t end, const void *context, double *longest) {
   const SimStep *step = context;
-  const SimCubic cubic = step->cubic;
   SimParticles *p = step->particles;
-  const float *restrict x = p->now.predicted[0], *restrict y = p->now.predicted[1], *restrict z = p->now.predicted[2];
-  const float *restrict lambda = p->lambda, *restrict pair_gradient = step->neighbours->gradient;
-  const uint32_t *restrict start = step->neighbours->start, *restrict index = step->neighbours->index;
-  float inverse_reference = 1 / sim_cubic_value(&cubic, 0.2f * cubic.h);
   for (int32_t i = begin; i < end; i++) {
-    float px = x[i], py = y[i], pz = z[i], own = lambda[i], mx = 0, my = 0, mz = 0;
-    for (uint32_t k = start[i]; k < start[i + 1]; k++) {
-      uint32_t j = index[k];
-      float dx = px - x[j], dy = py - y[j], dz = pz - z[j];
-      float w = sim_cubic_value(&cubic, sqrtf(dx * dx + dy * dy + dz * dz)) * inverse_reference;
-      float factor = (own + lambda[j] - step->tensile * (w * w) * (w * w)) * pair_gradient[k];
-      mx += factor * dx;
-      my += factor * dy;
-      mz += factor * dz;
+    float from[3], to[3], move[3], d2 = 0;
+    correction(step, i, move);
+    for (int k = 0; k < 3; k++) {
+      from[k] = p->now.position[k][i];
+      to[k] = p->now.predicted[k][i] + move[k];
     }
-    float from[3] = {p->now.position[0][i], p->now.position[1][i], p->now.position[2][i]};
-    float to[3] = {px + mx + 2 * own * p->solid_gradient[0][i], py + my + 2 * own * p->solid_gradient[1][i],
-                   pz + mz + 2 * own * p->solid_gradient[2][i]};
     sim_boundary_clamp(step->boundary, from, to);
-    for (int k = 0; k < 3; k++) p->scratch[k][i] = to[k];
-    float d2 = (to[0] - px) * (to[0] - px) + (to[1] - py) * (to[1] - py) + (to[2] - pz) * (to[2] - pz);
-    if (!(d2 <= (float)longest[0])) longest[0] = isnan(d2) ? INFINITY : d2;
+    for (int k = 0; k < 3; k++) {
+      float moved = to[k] - p->now.predicted[k][i];
+      d2 += moved * moved;
+      p->scratch[k][i] = to[k];
+    }
+    if (!((double)d2 <= longest[0])) longest[0] = isnan(d2) ? INFINITY : (double)d2;
   }
 }
 
@@ -166,19 +253,24 @@ void sim_pbf_velocity(const SimStep *step) {
 static void viscosity_kernel(int32_t begin, int32_t end, const void *context) {
   const SimStep *step = context;
   const SimCubic cubic = step->cubic;
+  const SimNeighbours *lists = step->neighbours;
   SimParticles *p = step->particles;
-  const float *restrict x = p->now.predicted[0], *restrict y = p->now.predicted[1], *restrict z = p->now.predicted[2];
   float *const *v = p->now.next_velocity;
-  const uint32_t *restrict start = step->neighbours->start, *restrict index = step->neighbours->index;
+  Pairs pairs, velocities;
+  float w[PIECE];
   for (int32_t i = begin; i < end; i++) {
-    float sum[3] = {0, 0, 0};
-    for (uint32_t k = start[i]; k < start[i + 1]; k++) {
-      uint32_t j = index[k];
-      float dx = x[i] - x[j], dy = y[i] - y[j], dz = z[i] - z[j];
-      float w = sim_cubic_value(&cubic, sqrtf(dx * dx + dy * dy + dz * dz));
-      for (int a = 0; a < 3; a++) sum[a] += w * (v[a][j] - v[a][i]);
+    float sum[3][LANES] = {{0}};
+    for (uint32_t k = lists->start[i]; k < lists->end[i]; k += PIECE) {
+      uint32_t count = lists->end[i] - k < PIECE ? lists->end[i] - k : PIECE;
+      gather_pairs(&pairs, p->now.predicted, i, lists->index + k, (int32_t)count, 2 * cubic.h);
+      gather_pairs(&velocities, v, i, lists->index + k, (int32_t)count, 0);
+      for (int32_t a = 0; a < pairs.count; a++) {
+        float dx = pairs.dx[a], dy = pairs.dy[a], dz = pairs.dz[a];
+        w[a] = sim_cubic_value(&cubic, sqrtf(dx * dx + dy * dy + dz * dz));
+      }
+      add_weighted(&velocities, w, sum);
     }
-    for (int a = 0; a < 3; a++) p->scratch[a][i] = v[a][i] + step->viscosity * sum[a];
+    for (int a = 0; a < 3; a++) p->scratch[a][i] = v[a][i] - step->viscosity * lane_sum(sum[a]);
   }
 }
 

@@ -150,6 +150,7 @@ static SimStep make_step(SimWorld *world, float dt) {
                   .dt = dt,
                   .inverse_dt = dt > 0 ? 1 / dt : 0,
                   .cubic = world->cubic,
+                  .omega = world->cubic.omega,
                   .relaxation = world->def.relaxation * strength,
                   .tensile = world->def.tensile / strength,
                   .viscosity = world->def.viscosity,
