@@ -10,7 +10,7 @@ RenderSettings render_default_settings(void) {
       .cookie = SETTINGS_COOKIE,
       .style = "points",
       .sun_direction = {-0.45f, 0.75f, 0.5f},
-      .sun_colour = {3.6f, 3.35f, 2.95f},
+      .sun_colour = {3.8f, 3.5f, 3.0f},
       .sun = true,
       .shadow = true,
       .sky = RENDER_SKY_CLEAR,

@@ -8,5 +8,5 @@ vec3 to_srgb(vec3 x) {
 }
 
 vec3 to_screen(vec3 light) {
-  return to_srgb(filmic(0.62 * max(light, 0.0)));
+  return to_srgb(filmic(0.66 * max(light, 0.0)));
 }

@@ -22,12 +22,11 @@ vec3 behind(vec3 n, float metres, float depth) {
   return in_front ? texelFetch(background, ivec2(gl_FragCoord.xy), 0).rgb : bent.rgb;
 }
 
-// Where the sun sees the water too, its smooth relief evens out the beads.
-vec3 smooth_normal(vec3 n, vec3 p, float path) {
+// At the surface that the sun sees, its smooth relief evens out the beads.
+vec3 smooth_normal(vec3 n, vec3 p, float share) {
 #ifdef WATER_SHADOW
   vec3 relief = textureLod(sun_relief, sun_place(p), 0.0).xyz;
-  float near_top = 1.0 - smoothstep(0.02, 0.05, path / container_max.w);
-  return normalize(mix(n, relief, 0.8 * near_top));
+  return normalize(mix(n, relief, share));
 #else
   return n;
 #endif
@@ -45,11 +44,12 @@ void main() {
   vec3 p = eye.xyz + ray * s.w;
   vec3 v = -normalize(ray);
   SunLight sunlit = sun_light(p);
-  vec3 n = smooth_normal(s.xyz, p, sunlit.path);
+  float on_top = 1.0 - smoothstep(0.015, 0.04, abs(sunlit.below) / container_max.w);
+  vec3 n = smooth_normal(s.xyz, p, 0.8 * on_top);
 
   // What comes through, and what the water scatters of sun and sky on the way.
   vec3 extinction = absorption.rgb + SCATTER;
-  vec3 through = exp(-extinction * metres);
+  vec3 through = 0.9 * exp(-extinction * metres); // the tenth is lost at the surface, which makes drops stand out
   float bead = 0.85 + 0.15 * dot(s.xyz, sun_direction.xyz);
   vec3 source = sun_colour.rgb * sunlit.direct * mix(1.0, sunlit.focus, 0.25) * bead * 0.18 + sky_average(n) * sunlit.diffuse * 0.9;
   vec3 light = behind(n, metres, s.w) * through + SCATTER / extinction * (1.0 - through) * source;
@@ -57,14 +57,14 @@ void main() {
 
   // Froth: white in sun and sky.
   float lit = max(0.5 + 0.5 * dot(s.xyz, sun_direction.xyz), 0.0);
-  light = mix(light, 0.8 * (sun_colour.rgb * sunlit.direct * lit / PI + sky_average(n)), 0.5 * colour.a);
+  light = mix(light, 0.75 * (sun_colour.rgb * sunlit.direct * lit / PI + sky_average(n)), 0.4 * colour.a);
 
   // Sky and sun in the surface.
   float facing = clamp(dot(n, v), 0.0, 1.0);
   float fresnel = absorption.a + (1.0 - absorption.a) * pow(1.0 - facing, 5.0);
   vec3 mirrored = sky(reflect(-v, n));
   vec3 half_way = normalize(v + sun_direction.xyz);
-  float glint = 60.0 * pow(clamp(dot(n, half_way), 0.0, 1.0), 400.0);
+  float glint = mix(8.0, 40.0, colour.a) * pow(clamp(dot(n, half_way), 0.0, 1.0), 300.0);
   light = mix(light, mirrored, fresnel) + sun_colour.rgb * sunlit.direct * fresnel * glint;
   result = vec4(light, 1.0);
 }

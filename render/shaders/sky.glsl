@@ -8,15 +8,15 @@ vec3 sky_average(vec3 normal) {
   return mix(sky_horizon.rgb, sky_zenith.rgb, 0.25 + 0.25 * normal.y);
 }
 #else
-const vec3 SKY_HORIZON = vec3(0.78, 0.83, 0.87);
-const vec3 SKY_MIDDLE = vec3(0.24, 0.45, 0.74);
-const vec3 SKY_ZENITH = vec3(0.07, 0.20, 0.50);
+const vec3 SKY_HORIZON = vec3(0.74, 0.84, 0.92);
+const vec3 SKY_MIDDLE = vec3(0.20, 0.46, 0.84);
+const vec3 SKY_ZENITH = vec3(0.05, 0.19, 0.56);
 
 // A clear late morning: haze at the horizon, deep blue above, a glow around the sun.
 vec3 sky(vec3 d) {
   float h = max(d.y, 0.0);
   vec3 blue = mix(SKY_MIDDLE, SKY_ZENITH, h);
-  vec3 colour = mix(blue, SKY_HORIZON, exp(-9.0 * h));
+  vec3 colour = mix(blue, SKY_HORIZON, exp(-8.0 * h));
   float towards_sun = max(dot(d, sun_direction.xyz), 0.0);
   float glow = 0.12 * pow(towards_sun, 6.0) + 0.5 * pow(towards_sun, 90.0);
   return colour + sun_direction.w * glow * vec3(1.0, 0.93, 0.80);

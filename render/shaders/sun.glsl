@@ -42,15 +42,17 @@ struct SunLight {
   float focus;          // bundling of that light by the water's bumps
   vec3 diffuse;         // the same of the sky's light
   float path;           // metres of water between the point and the sun
+  float below;          // metres below the water's smooth surface, along the sunlight; negative above it
 };
 
 // Light at a point in, below or beside the water. Besides absorbing, water scatters: its shadow is darker than its tint.
 SunLight sun_light(vec3 p) {
-  SunLight light = SunLight(vec3(1.0), 1.0, vec3(1.0), 0.0);
+  SunLight light = SunLight(vec3(1.0), 1.0, vec3(1.0), 0.0, -FAR);
 #ifdef WATER_SHADOW
   vec4 water = textureLod(sun_water, sun_place(p), 0.0);
   if (water.z > 0.0 && water.x > 0.0) {
-    light.path = clamp(water.y - dot(p, sun_direction.xyz), 0.0, water.x);
+    light.below = water.y - dot(p, sun_direction.xyz);
+    light.path = clamp(light.below, 0.0, water.x);
     light.direct = exp(-(absorption.rgb + SCATTER) * light.path);
     light.focus = mix(1.0, textureLod(sun_relief, sun_place(p), 0.0).w, light.path / water.x);
     light.diffuse = exp(-absorption.rgb * 0.7 * light.path);

@@ -33,7 +33,7 @@ void main() {
   float huv = (ne - nw - se + sw) / (4.0 * d.x * d.y);
   float k = m.x * sun_map.z;
   float spread = (1.0 + k * huu) * (1.0 + k * hvv) - k * k * huv * huv;
-  float focus = 1.0 / max(abs(spread), 0.3);
+  float focus = clamp(1.0 / max(abs(spread), 1e-3), 0.55, 2.2);
   // At its rim the water's height says nothing about its slope.
   imageStore(result, at, vec4(normalize(normal), mix(1.0, focus, smoothstep(0.9, 1.0, m.z))));
 }

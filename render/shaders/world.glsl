@@ -38,14 +38,14 @@ vec3 floor_light(vec3 p, float t) {
   vec2 grout = grout_between(at - 0.5 * footprint, at + 0.5 * footprint, 0.025);
   float in_grout = grout.x + grout.y - grout.x * grout.y;
   float flat_out = clamp(1.5 - max(footprint.x, footprint.y) * 2.0, 0.0, 1.0);
-  float shade = 1.0 + (hash(floor(at)) - 0.5) * 0.10 * flat_out;
-  vec3 albedo = mix(vec3(0.68, 0.60, 0.49) * shade, vec3(0.34, 0.29, 0.23), in_grout);
+  float shade = 1.0 + (hash(floor(at)) - 0.5) * 0.12 * flat_out;
+  vec3 albedo = mix(vec3(0.72, 0.64, 0.52) * shade, vec3(0.34, 0.30, 0.24), in_grout);
   SunLight sunlit = sun_light(p);
   vec3 sun = sun_colour.rgb * max(sun_direction.y, 0.0) / PI * sunlit.direct * sunlit.focus;
   vec3 light = albedo * (sun + sky_average(vec3(0.0, 1.0, 0.0)) * sunlit.diffuse);
   float reach = length(p.xz - eye.xz) / floor_plane.z;
   float grazing = 1.0 - 1.0 / slant;
-  light = mix(light, sky(normalize(ray * vec3(1.0, -1.0, 1.0))), 0.03 + 0.3 * pow(grazing, 4.0)); // a little polished
+  light = mix(light, sky(normalize(ray * vec3(1.0, -1.0, 1.0))), 0.02 + 0.25 * pow(grazing, 8.0)); // a little polished
   vec3 haze = sky(normalize(vec3(ray.x, 0.0, ray.z)));
   return mix(haze, light, exp(-reach * reach));
 }
