@@ -104,12 +104,15 @@ static void child(const LidoRun *run, const char *const *arguments, int out, int
   setenv("LSAN_OPTIONS", "print_suppressions=0:suppressions=" LIDO_SUPPRESSIONS, 1);
 #endif
   if (run->path_variable) setenv("PATH", run->path_variable, 1);
+  if (run->no_colour) setenv("NO_COLOR", "1", 1);
+  if (run->terminal) setenv("TERM", "xterm", 1);
   if (run->file_size_limit) {
     struct rlimit limit = {run->file_size_limit, run->file_size_limit};
     setrlimit(RLIMIT_FSIZE, &limit);
   }
   dup2(out, STDOUT_FILENO);
   dup2(err, STDERR_FILENO);
+  if (run->as_nobody && geteuid() == 0 && (setgid(65534) != 0 || setuid(65534) != 0)) _exit(127);
   execv(LIDO_PROGRAM, (char *const *)argv);
   _exit(127);
 }
@@ -148,8 +151,16 @@ static int wait_for(LidoRun *run, pid_t process, int reader) {
   return WIFSIGNALED(status) ? 1000 + WTERMSIG(status) : WEXITSTATUS(status);
 }
 
+// Our end of a new terminal.
+static FILE *open_terminal(void) {
+  int master = posix_openpt(O_RDWR | O_NOCTTY);
+  assert_true(master >= 0 && grantpt(master) == 0 && unlockpt(master) == 0);
+  return fdopen(master, "rb+");
+}
+
 void lido_run(LidoRun *run, const char *const *arguments) {
-  FILE *out = run->stdout_to ? fopen(run->stdout_to, "wb") : tmpfile(), *err = tmpfile();
+  FILE *out = run->stdout_to ? fopen(run->stdout_to, "wb") : tmpfile();
+  FILE *err = run->terminal ? open_terminal() : tmpfile();
   assert_non_null(out);
   assert_non_null(err);
   int ends[2] = {-1, -1};
@@ -160,12 +171,20 @@ void lido_run(LidoRun *run, const char *const *arguments) {
   fflush(NULL);
   pid_t process = fork();
   assert_true(process >= 0);
-  if (process == 0) child(run, arguments, run->close_reader ? ends[1] : fileno(out), fileno(err));
+  int slave = run->terminal ? open(ptsname(fileno(err)), O_RDWR | O_NOCTTY) : -1;
+  if (process == 0) child(run, arguments, run->close_reader ? ends[1] : fileno(out), slave >= 0 ? slave : fileno(err));
   if (run->close_reader) close(ends[1]);
   run->code = wait_for(run, process, ends[0]);
 
-  rewind(err);
-  size_t length = fread(run->text, 1, sizeof run->text - 1, err);
+  // Little is said to a terminal, it waits there until now.
+  if (run->terminal)
+    fcntl(fileno(err), F_SETFL, O_NONBLOCK);
+  else
+    rewind(err);
+  size_t length = 0;
+  for (ssize_t got = 1; got > 0; length += got > 0 ? (size_t)got : 0)
+    got = read(fileno(err), run->text + length, sizeof run->text - 1 - length);
+  if (slave >= 0) close(slave);
   run->text[length] = '\0';
   run->lines = 0;
   for (const char *c = run->text; *c; c++) run->lines += *c == '\n';

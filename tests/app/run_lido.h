@@ -13,6 +13,9 @@ typedef struct LidoRun {
   uint64_t file_size_limit;   ///< bytes that it may write to one file (RLIMIT_FSIZE)
   const char *interrupt_when; ///< Ctrl-C (SIGINT) as soon as this file is there
   const char *stdout_to;      ///< file for standard output, instead of one of the helper's own
+  bool terminal;              ///< standard error is a terminal
+  bool no_colour;             ///< NO_COLOR is set
+  bool as_nobody;             ///< without root's rights; the code is 127 where the program cannot be run like that
   bool close_reader;          ///< standard output is a pipe whose reader goes away after some bytes
 
   // Known after the run

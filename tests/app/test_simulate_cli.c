@@ -210,6 +210,26 @@ static void test_words(void **state) {
   assert_int_equal(size, 0);
 }
 
+static void test_terminal(void **state) {
+  (void)state;
+  LidoRun run = {.terminal = true};
+  LIDO(&run, "simulate", scene, "--frames", "3", "-o", in(folder, "p_%05d.vtk"));
+  check_done(&run);
+  assert_non_null(strstr(run.text, "\r"));
+  assert_non_null(strstr(run.text, "3/3 frames"));
+  assert_non_null(strstr(run.text, "\033[36m[########################]"));
+  assert_non_null(strstr(run.text, "\033[Klido: 3 frames written to ")); // the bar is gone before something is said
+  run = (LidoRun){.terminal = true, .no_colour = true};
+  LIDO(&run, "simulate", scene, "--frames", "3", "-o", in(folder, "p_%05d.vtk"));
+  assert_non_null(strstr(run.text, "[########################] 3/3 frames"));
+  assert_null(strstr(run.text, "\033[36m"));
+  // No bar where nothing has begun.
+  run = (LidoRun){.terminal = true};
+  LIDO(&run, "simulate", scene, "--frames", "3", "-q", "-o", in(folder, "nowhere/p.vtk"));
+  assert_int_equal(run.code, 2);
+  assert_int_equal(strncmp(run.text, "lido: -o: ", 10), 0);
+}
+
 int main(int argc, char **argv) {
   everything = argc > 1 && strcmp(argv[1], "long") == 0;
   const struct CMUnitTest long_tests[] = {cmocka_unit_test_setup_teardown(test_dam_break, set_up, tear_down)};
@@ -221,6 +241,7 @@ int main(int argc, char **argv) {
       cmocka_unit_test_setup_teardown(test_stats, set_up, tear_down),
       cmocka_unit_test_setup_teardown(test_interrupt, set_up, tear_down),
       cmocka_unit_test_setup_teardown(test_words, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(test_terminal, set_up, tear_down),
   };
   if (everything) return cmocka_run_group_tests(long_tests, NULL, NULL);
   return cmocka_run_group_tests(tests, NULL, NULL);
