@@ -33,6 +33,7 @@ typedef struct Window {
   int width, height;       // pixels that the renderer draws
   const char *event_style; // what the timeline said for the last frame, to see it change
   RenderView event_view;
+  RenderView home; // where C brings the eye back to
 
   // What moves
   InteractStrength strength;
@@ -102,17 +103,20 @@ static void choose_layer(Window *window) {
 
 // ---- The simulation ---------------------------------------------------------------------------------------------------
 
-// What the timeline says about style and eye, when it says something new: hands may change both in between.
+// What the timeline says about style and eye, when it says something new: hands may change both in between. What the
+// command line says stays.
 static void follow_timeline(Window *window) {
   double step = 1 / window->options->fps;
   RenderSettings settings = {.style = NULL};
   RenderView view = scene_view(window->scene);
   events_apply(window->scene, (double)live_frame(window->live)->frame.index * step, step, NULL, &settings, &view, NULL);
-  if (settings.style && settings.style != window->event_style) set_style(window, settings.style);
+  if (settings.style && settings.style != window->event_style && !window->options->style)
+    set_style(window, settings.style);
   window->event_style = settings.style;
   bool moved = memcmp(&view, &window->event_view, sizeof view) != 0;
   window->event_view = view;
   if (!moved || window->options->has_camera) return;
+  window->home = view;
   Camera camera = camera_from_view(&view, 1);
   camera.min_distance = fminf(window->input.camera.min_distance, camera.distance);
   camera.max_distance = fmaxf(window->input.camera.max_distance, camera.distance);
@@ -348,9 +352,8 @@ static void wait_for_events(Window *window) {
 
 static void act(Window *window) {
   if (window->input.recentre) {
-    RenderView view = window->event_view;
     Camera limits = window->input.camera;
-    window->input.camera = camera_from_view(&view, 1);
+    window->input.camera = camera_from_view(&window->home, 1);
     window->input.camera.min_distance = limits.min_distance;
     window->input.camera.max_distance = limits.max_distance;
     window->input.recentre = false;
@@ -395,12 +398,12 @@ static void set_up_eye(Window *window) {
   const SimContainer *container = &live_frame(window->live)->frame.container;
   float size = 0;
   for (int k = 0; k < 3; k++) size = hypotf(size, container->max[k] - container->min[k]);
-  window->event_view = scene_view(window->scene);
+  window->event_view = window->home = scene_view(window->scene);
   if (window->options->has_camera) {
-    memcpy(window->event_view.eye, window->options->camera, sizeof window->event_view.eye);
-    memcpy(window->event_view.target, window->options->camera + 3, sizeof window->event_view.target);
+    memcpy(window->home.eye, window->options->camera, sizeof window->home.eye);
+    memcpy(window->home.target, window->options->camera + 3, sizeof window->home.target);
   }
-  window->input.camera = camera_from_view(&window->event_view, size);
+  window->input.camera = camera_from_view(&window->home, size);
 }
 
 static bool open_window(Window *window, AppError *error) {
@@ -441,6 +444,8 @@ static bool start(Window *window, AppError *error) {
 }
 
 static void stop(Window *window) {
+  // The frame at work may take a while: do not leave a window about that no longer answers.
+  if (window->glfw) glfwHideWindow(window->glfw);
   stats_abort(window->stats);
   live_destroy(window->live);
   render_destroy(window->render);

@@ -319,6 +319,23 @@ def case_picture_cannot_be_saved(folder):
         window.quit()
 
 
+def case_answers_while_simulating(folder):
+    """A frame that takes seconds: the eye still moves, pictures are drawn and saved meanwhile."""
+    slow = dict(POOL, simulation={"particle_radius": 0.015, "iterations": 100, "time_step": 0.0005})
+    with Window(folder, scene=slow) as window:
+        begin, frame = time.monotonic(), window.frame()
+        for number in range(1, 4):
+            stroke(window, 1)
+            window.key("p")
+            path = os.path.join(folder, "out", f"picture_{number:03d}.png")
+            wait_until("a picture is saved", lambda: os.path.exists(path))
+        took = time.monotonic() - begin
+        pictures = [read_png(os.path.join(folder, "out", f"picture_{number:03d}.png"))[2] for number in range(1, 4)]
+        assert window.frame() <= frame + 1, f"{window.frame() - frame} frames in {took} s: too fast for this test"
+        assert pictures[0] != pictures[1] != pictures[2], "the eye did not move"
+        # Not quit: that would wait for the frame.
+
+
 def send_client_message(window_id, protocol):
     """What a window manager sends when its close button is pressed."""
     x11 = ctypes.CDLL(ctypes.util.find_library("X11") or "libX11.so.6")

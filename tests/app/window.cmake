@@ -13,7 +13,10 @@ if(Python3_FOUND)
            WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
   # One display, one mouse, and the figures depend on time: not beside other tests.
   set_tests_properties(app_window PROPERTIES SKIP_RETURN_CODE 77 TIMEOUT 600 RUN_SERIAL ON)
-  if(LIDO_SANITIZE MATCHES address)
+  if(LIDO_SANITIZE MATCHES thread)
+    set_tests_properties(app_window PROPERTIES ENVIRONMENT
+      "TSAN_OPTIONS=ignore_noninstrumented_modules=1 suppressions=${CMAKE_CURRENT_LIST_DIR}/window_tsan.supp")
+  elseif(LIDO_SANITIZE MATCHES address)
     add_library(app_keep_libraries MODULE keep_libraries.c)
     set_tests_properties(app_window PROPERTIES
       ENVIRONMENT "LD_PRELOAD=$<TARGET_FILE:app_keep_libraries>;ASAN_OPTIONS=verify_asan_link_order=0")
