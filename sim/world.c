@@ -321,7 +321,7 @@ bool sim_world_settle(SimWorld *world, SimError *error) {
   if (world->settled) return true;
   double since = sim_milliseconds();
   SimSorted *now = &world->particles.now;
-  for (int k = 0; k < 3; k++)
+  for (int k = 0; k < 3 && world->particles.count > 0; k++)
     memcpy(now->predicted[k], now->position[k], sizeof(float) * (size_t)world->particles.count);
   if (!find_neighbours(world, now->position, SIM_STAGE_frame, SIM_STAGE_frame, &since, error)) return false;
   SimStep step = make_step(world, 0);
