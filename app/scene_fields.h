@@ -141,7 +141,7 @@
 #define SCENE_LIGHT(F, O, L, V, S) \
   F(S, DIRECTION, direction,       "",         "[-1000, 1000]",    "[-0.45, 0.75, 0.5]", \
     "Towards the sun; any length.") \
-  F(S, VECTOR,    colour,          "linear",   "[0, 1000]",        "[3.6, 3.35, 2.95]", \
+  F(S, VECTOR,    colour,          "linear",   "[0, 1000]",        "[3.8, 3.5, 3]", \
     "Irradiance of the sun.") \
   F(S, SWITCH,    sun,             "",         "",                 "true", \
     "Off: neither sunlight nor glints.") \
