@@ -104,8 +104,10 @@ char *hud_block(const char *text, char *block, size_t size) {
   return block;
 }
 
-int hud_scale(float monitor_scale, int width) {
+int hud_scale(float monitor_scale, int width, int height) {
   int scale = (int)fminf(fmaxf(roundf(2 * monitor_scale), 1), 16);
-  while (scale > 1 && HUD_COLUMNS * HUD_GLYPH_WIDTH * scale > width) scale--;
+  int fits_x = width / (HUD_COLUMNS * HUD_GLYPH_WIDTH), fits_y = height / (HUD_LINES * HUD_LINE_HEIGHT);
+  int fits = fits_x < fits_y ? fits_x : fits_y;
+  if (scale > fits) scale = fits > 1 ? fits : 1;
   return scale;
 }

@@ -67,11 +67,11 @@ char *hud_block(const char *text, char *block, size_t size);
 /// A character of render_text at scale 1, pixels.
 enum { HUD_GLYPH_WIDTH = 6, HUD_LINE_HEIGHT = 11 };
 
-/// The longest line of the help, with its margins.
-enum { HUD_COLUMNS = 62 };
+/// What a window should have room for: the longest line of the help with its margins; figures, help and a notice.
+enum { HUD_COLUMNS = 62, HUD_LINES = 24 };
 
-/// The scale of all text in a window of `width` pixels: twice the monitor's, less where the help would not fit, at
-/// least 1.
-int hud_scale(float monitor_scale, int width);
+/// The scale of all text in a window of width × height pixels: twice the monitor's, less where the above would not fit,
+/// at least 1.
+int hud_scale(float monitor_scale, int width, int height);
 
 #endif

@@ -267,7 +267,7 @@ static int draw_block(Window *window, int y, bool upwards, const char *text) {
   int lines = 0, columns = 0;
   hud_measure(text, &lines, &columns);
   if (lines == 0) return y;
-  int scale = hud_scale(window->input.scale, window->width), line = HUD_LINE_HEIGHT * scale;
+  int scale = hud_scale(window->input.scale, window->width, window->height), line = HUD_LINE_HEIGHT * scale;
   if (upwards) y -= lines * line;
   render_text(window->render, HUD_GLYPH_WIDTH * scale, y, scale, hud_block(text, block, sizeof block));
   return y + (lines + 1) * line;
@@ -300,7 +300,7 @@ static void draw_hud(Window *window) {
     snprintf(message, sizeof message, "The simulation stopped: %s. Press R to start again.", failure);
   else if (glfwGetTime() < window->notice_end)
     snprintf(message, sizeof message, "%s", window->notice);
-  int scale = hud_scale(window->input.scale, window->width);
+  int scale = hud_scale(window->input.scale, window->width, window->height);
   hud_wrap(message, window->width / (HUD_GLYPH_WIDTH * scale) - 4, text, sizeof text);
   draw_block(window, window->height - margin, true, text);
 }

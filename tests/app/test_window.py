@@ -418,16 +418,27 @@ def case_failure_is_shown(folder):
 
 
 def case_no_display(folder):
-    path = write_scene(folder, POOL)
-    for environment in [{"DISPLAY": ""}, {"DISPLAY": ":98765"}]:
-        run = subprocess.run([PROGRAM, path], cwd=folder, env={**os.environ, **environment}, capture_output=True, text=True,
-                             timeout=PATIENCE)
+    for display in ["", ":98765"]:
+        run = run_once(folder, DISPLAY=display)
         assert run.returncode == 1, f"ended with {run.returncode}"
         assert run.stderr.count("\n") == 1 and "display" in run.stderr and "lido render" in run.stderr, run.stderr
-        run = subprocess.run([PROGRAM, "render", path, "--frames", "1", "--context", "glfw", "-o", "f_%d.png"],
-                             cwd=folder, env={**os.environ, **environment}, capture_output=True, text=True,
-                             timeout=PATIENCE)
+        run = subprocess.run([PROGRAM, "render", write_scene(folder, POOL), "--frames", "1", "--context", "glfw", "-o",
+                              "f_%d.png"], cwd=folder, env={**os.environ, "DISPLAY": display}, capture_output=True,
+                             text=True, timeout=PATIENCE)
         assert run.returncode == 1 and "display" in run.stderr, f"{run.returncode}: {run.stderr}"
+
+
+def run_once(folder, *arguments, **environment):
+    return subprocess.run([PROGRAM, write_scene(folder, POOL), *arguments], cwd=folder, env={**os.environ, **environment},
+                          capture_output=True, text=True, timeout=PATIENCE)
+
+
+def case_refusals(folder):
+    for arguments, words in [(["--layer", "nonsense"], "nonsense"), (["--context", "egl"], "--context")]:
+        run = run_once(folder, *arguments)
+        assert run.returncode == 2 and run.stderr.count("\n") == 1 and words in run.stderr, (run.returncode, run.stderr)
+    run = run_once(folder, MESA_GL_VERSION_OVERRIDE="3.3")
+    assert run.returncode == 1 and run.stderr.count("\n") == 1 and "OpenGL 4.5" in run.stderr, run.stderr
 
 
 def case_same_picture_with_every_context(folder):

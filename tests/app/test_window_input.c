@@ -192,11 +192,12 @@ static void blocks_are_rectangular(void **state) {
 
 static void text_is_as_large_as_fits(void **state) {
   (void)state;
-  assert_int_equal(hud_scale(1, 1280), 2);
-  assert_int_equal(hud_scale(2, 2560), 4);
-  assert_int_equal(hud_scale(1, 400), 1);
-  assert_int_equal(hud_scale(2, 1280), 3);
-  assert_int_equal(hud_scale(0, 0), 1);
+  assert_int_equal(hud_scale(1, 1280, 720), 2);
+  assert_int_equal(hud_scale(2, 2560, 1440), 4);
+  assert_int_equal(hud_scale(1, 400, 300), 1);
+  assert_int_equal(hud_scale(2, 1280, 1024), 3);
+  assert_int_equal(hud_scale(2, 2560, 600), 2);
+  assert_int_equal(hud_scale(0, 0, 0), 1);
 }
 
 int main(void) {
