@@ -15,10 +15,12 @@ bool app_fail(AppError *error, AppCode code, const char *format, ...) {
 }
 
 static volatile sig_atomic_t interrupted;
+static void (*last_act)(void); // set before signals matter, see app_before_abrupt_end
 
 static void on_interrupt(int signal_number) {
   // A second Ctrl-C ends the program at once, in case a frame hangs.
   if (interrupted) {
+    if (last_act) last_act();
     signal(signal_number, SIG_DFL);
     raise(signal_number);
   }
@@ -29,10 +31,21 @@ bool app_interrupted(void) {
   return interrupted != 0;
 }
 
+void app_before_abrupt_end(void (*function)(void)) {
+  last_act = function;
+}
+
+// A signal that whoever started us has ignored (nohup, a shell's background) stays ignored.
+static void catch_signal(int signal_number) {
+  struct sigaction action = {.sa_handler = on_interrupt, .sa_flags = SA_RESTART}, before;
+  sigemptyset(&action.sa_mask);
+  if (sigaction(signal_number, NULL, &before) == 0 && before.sa_handler == SIG_IGN) return;
+  sigaction(signal_number, &action, NULL);
+}
+
 void app_catch_interrupts(void) {
-  signal(SIGINT, on_interrupt);
-  signal(SIGTERM, on_interrupt);
-#ifdef SIGPIPE
+  catch_signal(SIGINT);
+  catch_signal(SIGTERM);
+  catch_signal(SIGHUP);
   signal(SIGPIPE, SIG_IGN); // a reader that goes away is a write error, with a message
-#endif
 }

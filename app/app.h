@@ -9,8 +9,8 @@
 /// Exit codes of the program.
 typedef enum AppCode {
   APP_OK = 0,
-  APP_FAILED = 1,     ///< it failed while running: disk full, no OpenGL, the simulation exploded
-  APP_BAD_INPUT = 2   ///< the command line or an input file is wrong
+  APP_FAILED = 1,   ///< it failed while running: disk full, no OpenGL, the simulation exploded
+  APP_BAD_INPUT = 2 ///< the command line or an input file is wrong
 } AppCode;
 
 /// Why something failed: one line without "lido: " in front and without a newline, e.g.
@@ -30,5 +30,7 @@ bool app_fail(AppError *error, AppCode code, const char *format, ...);
 /// True once Ctrl-C (or SIGTERM) was pressed; loops over frames end after the frame at hand.
 bool app_interrupted(void);
 void app_catch_interrupts(void);
+/// What a second Ctrl-C does before it ends the program at once. Must be safe in a signal handler.
+void app_before_abrupt_end(void (*function)(void));
 
 #endif

@@ -135,6 +135,7 @@ static void *open_failed(OutputFile *output, const char *path, AppError *error) 
 
 OutputFile *output_open(const char *path, AppError *error) {
   signal(SIGXFSZ, SIG_IGN); // a file size limit is a write error, with a message, and not the end of the program
+  app_before_abrupt_end(output_remove_leftovers);
   OutputFile *output = calloc(1, sizeof *output);
   if (!output) return open_failed(NULL, path, error);
   output->slot = -1;

@@ -138,6 +138,10 @@ static int wait_for(LidoRun *run, pid_t process, int reader) {
   for (int waited = 0; waitpid(process, &status, WNOHANG) == 0; waited++) {
     if (run->interrupt_when && !interrupted && is_there(run->interrupt_when)) {
       kill(process, SIGINT);
+      if (run->interrupt_twice) {
+        pause_ms(5);
+        kill(process, SIGINT);
+      }
       interrupted = true;
     }
     if (waited > 280000) {

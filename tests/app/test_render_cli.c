@@ -2,6 +2,7 @@
 // scene they came from; one context against another.
 #include <math.h>
 #include <setjmp.h>
+#include <signal.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdio.h>
@@ -288,6 +289,17 @@ static void test_film_interrupted(void **state) {
   assert_string_equal(text, expected);
 }
 
+// Twice Ctrl-C does not wait for the frame, and still leaves nothing half.
+static void test_film_interrupted_twice(void **state) {
+  (void)state;
+  if (system("command -v ffmpeg >/dev/null") != 0) skip();
+  LidoRun run = {.interrupt_when = in(folder, "out"), .interrupt_twice = true};
+  LIDO(&run, "render", "configs/dam_break.json", "--frames", "100000", "--size", "4000x3000", "-q", "-o",
+       in(folder, "out/film.mp4"));
+  assert_int_equal(run.code, 1000 + SIGINT);
+  assert_int_equal(folder_count(in(folder, "out")), 0);
+}
+
 // A program named ffmpeg that does what the script says.
 static void fake_ffmpeg(const char *script) {
   file_put_text(in(folder, "bin/ffmpeg"), script);
@@ -412,6 +424,7 @@ int main(void) {
       cmocka_unit_test_setup_teardown(test_layers, set_up, tear_down),
       cmocka_unit_test_setup_teardown(test_film, set_up, tear_down),
       cmocka_unit_test_setup_teardown(test_film_interrupted, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(test_film_interrupted_twice, set_up, tear_down),
       cmocka_unit_test_setup_teardown(test_film_fails, set_up, tear_down),
       cmocka_unit_test_setup_teardown(test_film_full_disk, set_up, tear_down),
       cmocka_unit_test_setup_teardown(test_raw, set_up, tear_down),
