@@ -1,6 +1,8 @@
 // lido: parse the command line, run one command, say in one line what went wrong.
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "app/commands.h"
 #include "sim/sim.h"
@@ -34,7 +36,16 @@ static bool run(Options *options, int argc, char **argv, AppError *error) {
   return functions[options->command](options, error) && flush_output(error);
 }
 
+/// OpenMP's threads spin while they wait, which takes the cores away from the drawing thread, the driver's threads and
+/// everybody else (a busy machine ran the simulator at a quarter of its speed). The runtime reads its wait policy before
+/// main, so the program starts itself anew with the policy set, unless the user chose one. Should that fail, it is
+/// merely slower.
+static void wait_passively(char **argv) {
+  if (!getenv("OMP_WAIT_POLICY") && setenv("OMP_WAIT_POLICY", "passive", 1) == 0) execv("/proc/self/exe", argv);
+}
+
 int main(int argc, char **argv) {
+  wait_passively(argv);
   AppError error = {APP_OK, ""};
   Options options;
   bool good = run(&options, argc, argv, &error);
