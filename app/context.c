@@ -6,17 +6,13 @@
 
 extern const ContextBackend context_backend_egl;
 extern const ContextBackend context_backend_osmesa;
-#ifdef LIDO_GLFW_CONTEXT
 extern const ContextBackend context_backend_glfw;
-#endif
 
 // In the order in which CONTEXT_AUTO tries them; it leaves out GLFW, which needs a display.
 static const ContextBackend *const backends[] = {
     &context_backend_egl,
     &context_backend_osmesa,
-#ifdef LIDO_GLFW_CONTEXT
     &context_backend_glfw,
-#endif
 };
 
 struct Context {
