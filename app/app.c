@@ -47,5 +47,7 @@ void app_catch_interrupts(void) {
   catch_signal(SIGINT);
   catch_signal(SIGTERM);
   catch_signal(SIGHUP);
-  signal(SIGPIPE, SIG_IGN); // a reader that goes away is a write error, with a message
+  // A reader that goes away and a file size limit are write errors, with a message.
+  signal(SIGPIPE, SIG_IGN);
+  signal(SIGXFSZ, SIG_IGN);
 }

@@ -69,7 +69,8 @@ static bool begin_drawing(Job *job, AppError *error) {
   RenderError cause;
   job->render = render_create(options->width, options->height, &cause);
   if (!job->render) return render_fail(error, &cause);
-  if (options->layer) render_show_layer(job->render, options->layer); // whether the style has it is asked frame by frame
+  if (options->layer)
+    render_show_layer(job->render, options->layer); // whether the style has it is asked frame by frame
   job->pixels = malloc(size);
   if (job->kind == RECORD_PFM) job->values = malloc(size * sizeof *job->values);
   if (!job->pixels || (job->kind == RECORD_PFM && !job->values)) return app_fail(error, APP_FAILED, "out of memory");
@@ -78,7 +79,8 @@ static bool begin_drawing(Job *job, AppError *error) {
 
 static bool begin_recording(Job *job, AppError *error) {
   const Options *options = job->options;
-  RecordDef def = {options->output, options->width, options->height, options->fps, source_count(job->source)};
+  RecordDef def = {options->output,           options->width,           options->height, options->fps,
+                   source_first(job->source), source_count(job->source)};
   if (options->stats && !(job->stats = stats_open(options->stats, error))) return false;
   job->record = record_open(&def, error);
   return job->record != NULL;

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "app/commands.h"
+#include "app/output.h"
 #include "app/particle_file.h"
 #include "app/pattern.h"
 #include "app/progress.h"
@@ -18,6 +19,15 @@ static bool check(const Options *options, Pattern *pattern, AppError *error) {
   if (!particle_file_named(options->output))
     return app_fail(error, APP_BAD_INPUT, "-o: '%s': must end in .vtk or .ply", options->output);
   return pattern_parse(pattern, options->output, error);
+}
+
+// Whether the first file can be written, before the frames up to it are simulated.
+static bool probe(const Source *source, const Pattern *pattern, AppError *error) {
+  char *path = pattern_expand(pattern, source_first(source));
+  if (!path) return app_fail(error, APP_FAILED, "out of memory");
+  bool fine = output_probe(path, error);
+  free(path);
+  return fine;
 }
 
 static bool write_frame(Source *source, const Pattern *pattern, Stats *stats, AppError *error) {
@@ -53,6 +63,7 @@ bool command_simulate(const Options *options, AppError *error) {
   if (fine && !pattern->numbered && source_count(source) > 1)
     fine = app_fail(error, APP_BAD_INPUT, "-o: '%s': the name needs a number (%%05d) where there are several frames",
                     options->output);
+  fine = fine && probe(source, pattern, error);
   if (fine && options->stats) fine = (stats = stats_open(options->stats, error)) != NULL;
   if (fine) {
     fine = run(options, pattern, source, stats, error);

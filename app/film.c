@@ -123,7 +123,10 @@ Film *film_open(const FilmDef *def, AppError *error) {
     film->pipe = ends[1];
     if (status) close(ends[1]);
   }
-  if (!status) return film;
+  if (!status) {
+    output_set_writer(film->output, film->process);
+    return film;
+  }
   if (status == ENOENT)
     app_fail(error, APP_FAILED,
              "%s: ffmpeg is needed for films and was not found; install it, or write pictures "
@@ -145,6 +148,7 @@ static int wait_for_ffmpeg(Film *film) {
   while (waitpid(film->process, &status, 0) < 0)
     if (errno != EINTR) return -1;
   film->process = 0;
+  output_set_writer(film->output, 0);
   return status;
 }
 

@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #ifndef PATH_MAX
@@ -30,6 +31,7 @@ struct OutputFile {
 enum { MAX_LEFTOVERS = 16 };
 static char leftovers[MAX_LEFTOVERS][PATH_MAX];
 static volatile sig_atomic_t in_use[MAX_LEFTOVERS];
+static volatile pid_t writers[MAX_LEFTOVERS]; // processes that write in our place, 0 for our own writing
 
 static int leftover_add(const char *part) {
   for (int i = 0; i < MAX_LEFTOVERS; i++) {
@@ -42,12 +44,21 @@ static int leftover_add(const char *part) {
 }
 
 static void leftover_forget(int slot) {
-  if (slot >= 0) in_use[slot] = 0;
+  if (slot < 0) return;
+  in_use[slot] = 0;
+  writers[slot] = 0;
 }
 
 void output_remove_leftovers(void) {
-  for (int i = 0; i < MAX_LEFTOVERS; i++)
-    if (in_use[i]) unlink(leftovers[i]);
+  for (int i = 0; i < MAX_LEFTOVERS; i++) {
+    if (!in_use[i]) continue;
+    if (writers[i] > 0 && kill(writers[i], SIGKILL) == 0) waitpid(writers[i], NULL, 0);
+    unlink(leftovers[i]);
+  }
+}
+
+void output_set_writer(OutputFile *output, pid_t process) {
+  if (output->slot >= 0) writers[output->slot] = process;
 }
 
 // ---- Folders -------------------------------------------------------------------------------------------------------------
@@ -134,7 +145,6 @@ static void *open_failed(OutputFile *output, const char *path, AppError *error) 
 }
 
 OutputFile *output_open(const char *path, AppError *error) {
-  signal(SIGXFSZ, SIG_IGN); // a file size limit is a write error, with a message, and not the end of the program
   app_before_abrupt_end(output_remove_leftovers);
   OutputFile *output = calloc(1, sizeof *output);
   if (!output) return open_failed(NULL, path, error);
@@ -203,6 +213,12 @@ void output_abort(OutputFile *output) {
   if (output->part[0]) unlink(output->part);
   leftover_forget(output->slot);
   free_output(output);
+}
+
+bool output_probe(const char *path, AppError *error) {
+  OutputFile *output = output_open(path, error);
+  output_abort(output);
+  return output != NULL;
 }
 
 bool output_write_all(int descriptor, const void *bytes, size_t size) {

@@ -11,6 +11,7 @@
 #define LIDO_APP_OUTPUT_H
 
 #include <stdio.h>
+#include <sys/types.h>
 
 #include "app/app.h"
 
@@ -22,10 +23,15 @@ OutputFile *output_open(const char *path, AppError *error);
 FILE *output_file(OutputFile *output);
 /// The name under which the file is being written, for another program that writes it in our place.
 const char *output_part(const OutputFile *output);
+/// That program's process, 0 when it has ended: output_remove_leftovers ends it first, or it would make the file anew.
+void output_set_writer(OutputFile *output, pid_t process);
 /// Flush, close and rename into place. On failure nothing is left and *error names file and cause. Frees `output`.
 bool output_commit(OutputFile *output, AppError *error);
 /// Throw away what was written and free `output`. NULL is allowed.
 void output_abort(OutputFile *output);
+
+/// Whether `path` can be written, asked before long work is done for it. Makes its folder; false and *error when not.
+bool output_probe(const char *path, AppError *error);
 
 /// Make the folder that `path` lies in, with its parents. False and *error when it cannot be.
 bool output_make_folder(const char *path, AppError *error);

@@ -37,6 +37,14 @@ bool record_kind(const char *output, RecordKind *kind, AppError *error) {
   return true;
 }
 
+static bool probe(const Record *record, AppError *error) {
+  char *path = pattern_expand(&record->pattern, record->def.first_frame);
+  if (!path) return app_fail(error, APP_FAILED, "out of memory");
+  bool fine = output_probe(path, error);
+  free(path);
+  return fine;
+}
+
 // Everything that is wrong with where the pictures shall go, before any work is done.
 static bool prepare(Record *record, AppError *error) {
   const RecordDef *def = &record->def;
@@ -47,7 +55,7 @@ static bool prepare(Record *record, AppError *error) {
     if (!record->pattern.numbered && def->frame_count > 1)
       return app_fail(error, APP_BAD_INPUT, "-o: '%s': the name needs a number (%%05d) where there are several frames",
                       def->output);
-    return true;
+    return probe(record, error);
   case RECORD_FILM: {
     if (!pattern_parse(&record->pattern, def->output, error)) return false;
     if (record->pattern.numbered)

@@ -20,6 +20,7 @@ typedef struct RecordDef {
   const char *output; ///< what follows -o
   int32_t width, height;
   double fps;          ///< of a film
+  int64_t first_frame; ///< the number of the first one
   int64_t frame_count; ///< how many are to come: a name without a number is fine for one only
 } RecordDef;
 

@@ -246,6 +246,10 @@ int64_t source_count(const Source *source) {
   return source->world ? source->end - source->first : source->number_count;
 }
 
+int64_t source_first(const Source *source) {
+  return source->world ? source->first : source->numbers[0];
+}
+
 SourceStep source_next(Source *source, AppError *error) {
   SourceStep step = source->world ? next_of_scene(source, error) : next_of_files(source, error);
   if (step == SOURCE_FRAME && !look(source, error)) return SOURCE_FAILED;

@@ -29,6 +29,8 @@ void source_close(Source *source); ///< NULL is allowed
 
 /// How many frames it will give.
 int64_t source_count(const Source *source);
+/// The number of the first one.
+int64_t source_first(const Source *source);
 
 typedef enum SourceStep {
   SOURCE_FRAME, ///< the next frame is there

@@ -137,11 +137,10 @@ static int wait_for(LidoRun *run, pid_t process, int reader) {
   bool interrupted = false;
   for (int waited = 0; waitpid(process, &status, WNOHANG) == 0; waited++) {
     if (run->interrupt_when && !interrupted && is_there(run->interrupt_when)) {
+      if (run->interrupt_twice) pause_ms(200);
       kill(process, SIGINT);
-      if (run->interrupt_twice) {
-        pause_ms(5);
-        kill(process, SIGINT);
-      }
+      if (run->interrupt_twice) pause_ms(5);
+      if (run->interrupt_twice) kill(process, SIGINT);
       interrupted = true;
     }
     if (waited > 280000) {

@@ -12,7 +12,7 @@ typedef struct LidoRun {
   const char *path_variable;  ///< value of PATH
   uint64_t file_size_limit;   ///< bytes that it may write to one file (RLIMIT_FSIZE)
   const char *interrupt_when; ///< Ctrl-C (SIGINT) as soon as this file is there
-  bool interrupt_twice;       ///< and once more a moment later
+  bool interrupt_twice;       ///< in the middle of a frame (a slow one: some time later), and once more a moment later
   const char *stdout_to;      ///< file for standard output, instead of one of the helper's own
   bool terminal;              ///< standard error is a terminal
   bool no_colour;             ///< NO_COLOR is set

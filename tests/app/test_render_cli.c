@@ -336,8 +336,8 @@ static void test_film_fails(void **state) {
 static void test_film_full_disk(void **state) {
   (void)state;
   if (system("command -v ffmpeg >/dev/null") != 0) skip();
-  LidoRun run = {.file_size_limit = 1000};
-  LIDO(&run, "render", scene, "--frames", "12", SIZE, "-q", "-o", in(folder, "out/film.mp4"));
+  LidoRun run = {.file_size_limit = 5000};
+  LIDO(&run, "render", scene, "--frames", "12", "--size", "480x270", "-q", "-o", in(folder, "out/film.mp4"));
   check_said(&run, 1, "film.mp4: ffmpeg ");
   assert_int_equal(folder_count(in(folder, "out")), 0);
 }
@@ -370,6 +370,9 @@ static void test_reader_goes_away(void **state) {
   run = (LidoRun){.stdout_to = "/dev/full"};
   LIDO(&run, "render", scene, "--frames", "2", SIZE, "-q", "-o", "-");
   check_said(&run, 1, "standard output: cannot be written: No space left on device");
+  run = (LidoRun){.stdout_to = "/dev/ptmx"};
+  LIDO(&run, "render", scene, "--frames", "2", SIZE, "-q", "-o", "-");
+  check_said(&run, 2, "raw pictures are not for a terminal");
 }
 
 static void test_interrupt(void **state) {

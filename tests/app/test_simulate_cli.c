@@ -196,6 +196,41 @@ static void test_interrupt(void **state) {
   free(text);
 }
 
+// When a run fails in the middle, the frames until then stay.
+static void test_failure(void **state) {
+  (void)state;
+  char text[8192] = SMALL_SCENE ", \"events\": [";
+  for (int i = 0; i <= SIM_MAX_PUSHES; i++)
+    snprintf(text + strlen(text), sizeof text - strlen(text),
+             "%s{\"type\": \"push\", \"time\": 0.055, \"origin\": [0, 0, 0], \"direction\": [0, 0, -1], "
+             "\"acceleration\": [0, 1, 0]}",
+             i ? ", " : "");
+  strcat(text, "]}");
+  file_put_text(scene, text);
+  LidoRun run = {0};
+  LIDO(&run, "simulate", scene, "-q", "-o", in(folder, "out/p_%05d.ply"), "--stats", in(folder, "s.jsonl"));
+  assert_int_equal(run.code, 1);
+  assert_int_equal(run.lines, 1);
+  assert_non_null(strstr(run.text, "; 4 of 12 frames are in "));
+  assert_int_equal(folder_count(in(folder, "out")), 4);
+  assert_int_equal(folder_count(folder), 3); // scene.json, out/, s.jsonl
+}
+
+static void test_seed(void **state) {
+  (void)state;
+  static const char *const seeds[] = {"5", "5", "6"};
+  char name[32];
+  LidoRun run = {0};
+  for (int i = 0; i < 3; i++) {
+    snprintf(name, sizeof name, "%d.vtk", i);
+    LIDO(&run, "simulate", scene, "--frames", "2:3", "-q", "--set", "simulation.jitter=0.2", "--seed", seeds[i], "-o",
+         in(folder, name));
+    check_done(&run);
+  }
+  assert_true(files_equal(in(folder, "0.vtk"), in(folder, "1.vtk")));
+  assert_false(files_equal(in(folder, "0.vtk"), in(folder, "2.vtk")));
+}
+
 // On a terminal and off it, quiet or not: what is said is said on stderr, and little of it.
 static void test_words(void **state) {
   (void)state;
@@ -240,6 +275,8 @@ int main(int argc, char **argv) {
       cmocka_unit_test_setup_teardown(test_part, set_up, tear_down),
       cmocka_unit_test_setup_teardown(test_stats, set_up, tear_down),
       cmocka_unit_test_setup_teardown(test_interrupt, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(test_failure, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(test_seed, set_up, tear_down),
       cmocka_unit_test_setup_teardown(test_words, set_up, tear_down),
       cmocka_unit_test_setup_teardown(test_terminal, set_up, tear_down),
   };
