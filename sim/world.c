@@ -53,7 +53,7 @@ static bool copy_def(SimWorld *world, const SimWorldDef *def) {
   world->def = *def;
   if (!copy_array((void **)&world->blocks, def->blocks, def->block_count, sizeof(SimBlockDef)) ||
       !copy_array((void **)&world->obstacles, def->obstacles, def->obstacle_count, sizeof(SimObstacle)) ||
-      !copy_array((void **)&world->bodies, def->obstacles, def->obstacle_count, sizeof(SimBody)))
+      !(world->bodies = sim_allocate((size_t)def->obstacle_count * sizeof(SimBody))))
     return false;
   world->def.blocks = world->blocks;
   world->def.obstacles = world->obstacles;
@@ -309,6 +309,8 @@ bool sim_world_advance(SimWorld *world, double duration, SimError *error) {
     rest = substeps > 1 ? rest - dt : 0;
   }
   world->push_count = 0;
+  // Always settled between calls, whether or not anyone looks: settling sorts, and the order decides how sums round.
+  world->failed = world->failed || !sim_world_settle(world, &world->failure);
   if (!world->failed) {
     world->time = end;
     world->advances++;

@@ -47,7 +47,8 @@ bool sim_block_check(const SimBlockDef *block, const char *name, SimError *error
 /// Fill a block with particles. Adds to counts.left_out if `start`. Returns the number added, −1 and *error.
 int32_t sim_fill_block(SimWorld *world, const SimBlockDef *block, bool start, SimError *error);
 
-/// Sort by the present positions and compute grid, lists and density of the present state, if not done already.
+/// Sort by the present positions and compute grid, lists and density of the present state, if not done already. Every
+/// call of the interface leaves a world settled (unless it failed), so looking at it never changes what comes next.
 bool sim_world_settle(SimWorld *world, SimError *error);
 
 /// Largest speed at which the step still follows the water.

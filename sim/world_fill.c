@@ -111,7 +111,7 @@ int32_t sim_fill_block(SimWorld *world, const SimBlockDef *block, bool start, Si
                       block->velocity[2] * block->velocity[2]);
   if (10 * speed > world->speed_limit) world->speed_limit = 10 * speed;
   if (start) world->counts.left_out += left_out;
-  world->settled = false;
+  if (world->particles.count > before) world->settled = false;
   return world->particles.count - before;
 }
 
@@ -121,5 +121,6 @@ int32_t sim_world_pour(SimWorld *world, const SimBlockDef *block, SimError *erro
     return -1;
   }
   if (!sim_block_check(block, "block", error)) return -1;
-  return sim_fill_block(world, block, false, error);
+  int32_t added = sim_fill_block(world, block, false, error);
+  return added > 0 && !sim_world_settle(world, error) ? -1 : added;
 }
