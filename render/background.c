@@ -18,7 +18,8 @@ bool render_background_resize(RenderPicture *picture, RenderError *error) {
 
 void render_background_destroy(RenderPicture *picture) {
   RenderBackground *background = &picture->background;
-  gpu_program_destroy(&background->world_program);
+  gpu_program_destroy(&background->sky_program);
+  gpu_program_destroy(&background->floor_program);
   gpu_program_destroy(&background->obstacle_program);
   gpu_program_destroy(&background->pane_program);
   gpu_program_destroy(&background->edge_program[0]);
@@ -29,22 +30,30 @@ void render_background_destroy(RenderPicture *picture) {
 
 static GpuInputs sunlit_inputs(const RenderPicture *picture) {
   return (GpuInputs){
-      .textures = {[5] = &picture->sun_map.relief, [6] = &picture->sun_map.blurred, [7] = &picture->sun_map.solid},
+      .textures = {[5] = &picture->sun_map.normal, [6] = &picture->sun_map.water, [7] = &picture->sun_map.solid},
       .frame = &picture->uniforms};
 }
 
-// Output: colour and depth of every pixel.
+// Output: colour and depth of every pixel. The floor first, then the sky where nothing has been drawn: a software
+// rasteriser skips what fails the depth test, but runs both sides of a branch.
 static bool draw_world(RenderPicture *picture, RenderError *error) {
   RenderBackground *background = &picture->background;
-  const GpuProgramDesc desc = {.label = "sky and floor", .file = "world.glsl", .defines = picture->defines};
-  if (!gpu_program_prepare(&background->world_program, &desc, error)) return false;
+  const GpuProgramDesc floor = {.label = "floor", .file = "floor.glsl", .defines = picture->defines};
+  const GpuProgramDesc sky = {.label = "sky", .file = "backdrop.glsl", .defines = picture->defines};
+  GpuDraw draw = {.target = &background->target, .in = sunlit_inputs(picture)};
   gpu_clear_depth(&background->target);
-  gpu_draw(picture->gpu, &(GpuDraw){
-                             .program = &background->world_program,
-                             .target = &background->target,
-                             .depth = GPU_DEPTH_WRITE,
-                             .in = sunlit_inputs(picture),
-                         });
+  if (picture->settings->floor != RENDER_FLOOR_NONE) {
+    if (!gpu_program_prepare(&background->floor_program, &floor, error)) return false;
+    draw.program = &background->floor_program;
+    draw.vertices = 12;
+    draw.depth = GPU_DEPTH_WRITE;
+    gpu_draw(picture->gpu, &draw);
+  }
+  if (!gpu_program_prepare(&background->sky_program, &sky, error)) return false;
+  draw.program = &background->sky_program;
+  draw.vertices = 0;
+  draw.depth = GPU_DEPTH_TEST;
+  gpu_draw(picture->gpu, &draw);
   return true;
 }
 
@@ -86,8 +95,12 @@ static bool draw_edges(RenderPicture *picture, const GpuTarget *out, bool front,
 }
 
 bool render_background_draw(RenderPicture *picture, RenderError *error) {
-  return draw_world(picture, error) && draw_obstacles(picture, error) &&
-         draw_edges(picture, &picture->background.target, false, error);
+  if (!draw_world(picture, error) || !draw_obstacles(picture, error) ||
+      !draw_edges(picture, &picture->background.target, false, error)) {
+    return false;
+  }
+  gpu_texture_copy(&picture->background.colour, &picture->colour);
+  return true;
 }
 
 static bool draw_panes(RenderPicture *picture, RenderError *error) {

@@ -67,6 +67,8 @@ typedef struct GpuTexture {
 bool gpu_texture_create(GpuTexture *texture, const GpuTextureDesc *desc, RenderError *error);
 void gpu_texture_destroy(GpuTexture *texture);
 int32_t gpu_texture_channels(const GpuTexture *texture);
+/// Copy all texels to a texture of the same size and format.
+void gpu_texture_copy(const GpuTexture *from, const GpuTexture *to);
 /// Read all texels as floats, bottom row first: width·height·gpu_texture_channels values.
 void gpu_texture_read(const GpuTexture *texture, float *values);
 
@@ -169,7 +171,7 @@ void gpu_draw(Gpu *gpu, const GpuDraw *draw);
 /// One compute dispatch over `width`·`height` items in groups of 8·8. What it writes is visible to every later pass.
 typedef struct GpuDispatch {
   const GpuProgram *program;
-  const GpuTexture *output; // image unit 0, written
+  const GpuTexture *output[GPU_MAX_COLOURS]; // image units, written
   int32_t width, height;
   GpuInputs in;
 } GpuDispatch;

@@ -82,11 +82,14 @@ void gpu_dispatch(Gpu *gpu, const GpuDispatch *dispatch) {
       [GPU_RGBA8] = GL_RGBA8, [GPU_RGBA16F] = GL_RGBA16F, [GPU_RGBA32F] = GL_RGBA32F, [GPU_R32F] = GL_R32F};
   set_inputs(gpu, &dispatch->in);
   glUseProgram(dispatch->program->id);
-  glBindImageTexture(0, dispatch->output->id, 0, GL_FALSE, 0, GL_WRITE_ONLY, image_formats[dispatch->output->format]);
+  for (GLuint i = 0; i < GPU_MAX_COLOURS && dispatch->output[i] != NULL; ++i) {
+    const GpuTexture *output = dispatch->output[i];
+    glBindImageTexture(i, output->id, 0, GL_FALSE, 0, GL_WRITE_ONLY, image_formats[output->format]);
+  }
   glDispatchCompute((GLuint)(dispatch->width + 7) / 8, (GLuint)(dispatch->height + 7) / 8, 1);
-  // Image stores become visible to texture fetches, to drawing over them, and to reading back.
+  // What was stored becomes visible to texture fetches, to shaders that read buffers, to drawing and to reading back.
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT |
-                  GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+                  GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
 }
 
 void gpu_clear_colour(const GpuTarget *target, int32_t index, const float rgba[4]) {

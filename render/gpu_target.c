@@ -42,6 +42,11 @@ int32_t gpu_texture_channels(const GpuTexture *texture) {
   return formats[texture->format].channels;
 }
 
+void gpu_texture_copy(const GpuTexture *from, const GpuTexture *to) {
+  glCopyImageSubData(from->id, GL_TEXTURE_2D, 0, 0, 0, 0, to->id, GL_TEXTURE_2D, 0, 0, 0, 0, from->width, from->height,
+                     1);
+}
+
 void gpu_texture_read(const GpuTexture *texture, float *values) {
   const size_t count = (size_t)texture->width * (size_t)texture->height * (size_t)gpu_texture_channels(texture);
   const GLsizei size = count * sizeof(float) > INT32_MAX ? INT32_MAX : (GLsizei)(count * sizeof(float));

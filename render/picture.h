@@ -8,6 +8,8 @@
 
 #include "render/gpu.h"
 
+typedef struct RenderPicture RenderPicture;
+
 /// Distance from the eye below which nothing is drawn, m.
 #define RENDER_NEAR 1e-3f
 /// Particles farther than this from the origin are left out as invalid, m.
@@ -43,6 +45,17 @@ typedef struct RenderParticles {
 bool render_particles_upload(RenderParticles *particles, const SimFrame *frame, RenderError *error);
 void render_particles_destroy(RenderParticles *particles);
 
+/// Which tiles of the picture spheres may touch: passes that only concern water draw these (screen.glsl with TILES).
+#define RENDER_TILE_SIZE 32
+typedef struct RenderTiles {
+  GpuProgram program;
+  GpuBuffer mask;              // (rows, columns) uint32: 1 or 0
+  int32_t columns, rows;
+} RenderTiles;
+/// Input: the particles, drawn with `scale` times their radius. Output: picture->tiles.
+bool render_tiles_mark(RenderPicture *picture, float scale, RenderError *error);
+void render_tiles_destroy(RenderTiles *tiles);
+
 /// Solid bodies on the GPU, see obstacles.glsl.
 typedef struct RenderObstacles {
   GpuBuffer bodies;            // (count) struct Body
@@ -50,21 +63,22 @@ typedef struct RenderObstacles {
   float bounds_min[3], bounds_max[3]; // m; min > max when there are none
 } RenderObstacles;
 
-/// The scene as the sun sees it, from infinitely far away.
+/// The scene as the sun sees it, from infinitely far away. Heights are metres towards the sun.
 typedef struct RenderSunMap {
-  GpuProgram water_program, blur_program[2], relief_program, solid_program;
-  GpuTexture water;            // thickness (m), –, –, height of the water towards the sun (m): raw splats
-  GpuTexture half_blurred;
-  GpuTexture blurred;          // the same, smoothed: thickness, height, coverage
-  GpuTexture relief;           // from it: smooth normal of the water, focus of the light on what lies below
-  GpuTexture solid;            // height of the nearest obstacle towards the sun (m)
-  GpuTarget water_target, solid_target;
+  GpuProgram splat_program, blur_program[2], relief_program, solid_program;
+  GpuTexture raw;              // of the spheres: thickness (m), –, –, height
+  GpuTexture half_blurred, blurred; // thickness, height, coverage, –
+  GpuTexture water;            // thickness, height, coverage, focus of the light on what lies below
+  GpuTexture normal;           // of the smooth surface
+  GpuTexture solid;            // height of the nearest obstacle
+  GpuTarget raw_target, solid_target;
 } RenderSunMap;
 
 /// Sky, floor, obstacles and the back edges of the container.
 typedef struct RenderBackground {
-  GpuProgram world_program, obstacle_program, pane_program;
+  GpuProgram sky_program, floor_program, obstacle_program;
   GpuProgram edge_program[2];  // back, front
+  GpuProgram pane_program;
   GpuTexture colour;           // rgb: linear light; a: depth along the view axis (m), 0 for the sky
   GpuTarget target;
 } RenderBackground;
@@ -72,11 +86,11 @@ typedef struct RenderBackground {
 /// From linear light to bytes.
 typedef struct RenderCompose {
   GpuProgram tone_program, smooth_program, layer_program;
-  GpuTexture toned, final;
+  GpuTexture toned, final;     // before and after antialiasing
   GpuTarget toned_target, final_target;
 } RenderCompose;
 
-typedef struct RenderPicture {
+struct RenderPicture {
   Gpu *gpu;
   const SimFrame *frame;
   const RenderSettings *settings;
@@ -85,14 +99,15 @@ typedef struct RenderPicture {
   RenderFrameBlock block;      // what is in it
   char defines[256];           // compile-time choices: sky, floor, sun, shadow …
   RenderParticles particles;
+  RenderTiles tiles;
   RenderObstacles obstacles;
   RenderSunMap sun_map;
   RenderBackground background;
   RenderCompose compose;
   GpuTexture depth;            // reversed depth of everything drawn so far: background, then the style's surface
   GpuTexture colour;           // the style's picture in linear light
-  GpuTarget target;            // colour and depth: where a style draws its picture
-} RenderPicture;
+  GpuTarget target;            // colour and depth: where a style draws its picture, over a copy of the background
+};
 
 /// Camera, sun and environment into the Frame block and the compile-time choices.
 bool render_frame_block_write(RenderPicture *picture, const RenderView *view, RenderError *error);

@@ -29,7 +29,7 @@ static bool resize_picture(RenderPicture *picture, int32_t width, int32_t height
   picture->width = width;
   picture->height = height;
   const GpuTextureDesc depth = {"depth", width, height, GPU_DEPTH32F, false};
-  const GpuTextureDesc colour = {"picture", width, height, GPU_RGBA16F, false};
+  const GpuTextureDesc colour = {"picture", width, height, GPU_RGBA32F, false};
   return gpu_texture_create(&picture->depth, &depth, error) && gpu_texture_create(&picture->colour, &colour, error) &&
          gpu_target_create(&picture->target,
                            &(GpuTargetDesc){.label = "picture", .colour = {&picture->colour}, .depth = &picture->depth},
@@ -82,6 +82,7 @@ void render_destroy(Render *render) {
   render_background_destroy(picture);
   render_sun_map_destroy(picture);
   render_particles_destroy(&picture->particles);
+  render_tiles_destroy(&picture->tiles);
   gpu_buffer_destroy(&picture->obstacles.bodies);
   gpu_buffer_destroy(&picture->uniforms);
   gpu_target_destroy(&picture->target);

@@ -60,13 +60,16 @@ static void points_destroy(void *state) {
 
 static bool shade(Points *points, RenderPicture *picture, RenderError *error) {
   const GpuProgramDesc desc = {.label = "points: shade", .file = "points.glsl", .defines = picture->defines};
+  const RenderTiles *tiles = &picture->tiles;
   if (!gpu_program_prepare(&points->shade_program, &desc, error)) return false;
   gpu_draw(picture->gpu, &(GpuDraw){
                              .program = &points->shade_program,
                              .target = &picture->target,
+                             .vertices = 6 * tiles->columns * tiles->rows,
                              .in = {.textures = {&points->surface, &points->tint, &points->thickness,
-                                                 &picture->background.colour, [5] = &picture->sun_map.relief,
-                                                 [6] = &picture->sun_map.blurred, [7] = &picture->sun_map.solid},
+                                                 &picture->background.colour, [5] = &picture->sun_map.normal,
+                                                 [6] = &picture->sun_map.water, [7] = &picture->sun_map.solid},
+                                    .storage = {[7] = &tiles->mask},
                                     .frame = &picture->uniforms},
                          });
   return true;
@@ -77,7 +80,8 @@ static bool points_draw(void *state, RenderPicture *picture, RenderError *error)
   const float scale = picture->settings->points.scale;
 
   gpu_pass_begin(picture->gpu, "splat");
-  bool ok = render_splat_surface(picture, &points->splat_program, scale, &points->surface_target, error);
+  bool ok = render_tiles_mark(picture, scale, error) &&
+            render_splat_surface(picture, &points->splat_program, scale, &points->surface_target, error);
   gpu_pass_end(picture->gpu);
 
   gpu_pass_begin(picture->gpu, "thickness");

@@ -9,34 +9,37 @@
 
 bool render_sun_map_create(RenderPicture *picture, RenderError *error) {
   RenderSunMap *map = &picture->sun_map;
-  const GpuTextureDesc water = {"sun map: water", WATER_SIZE, WATER_SIZE, GPU_RGBA32F, false};
-  const GpuTextureDesc half_blurred = {"sun map: half blurred", WATER_SIZE, WATER_SIZE, GPU_RGBA32F, false};
-  const GpuTextureDesc blurred = {"sun map: blurred", WATER_SIZE, WATER_SIZE, GPU_RGBA32F, true};
-  const GpuTextureDesc relief = {"sun map: relief", WATER_SIZE, WATER_SIZE, GPU_RGBA32F, true};
-  const GpuTextureDesc solid = {"sun map: obstacles", SOLID_SIZE, SOLID_SIZE, GPU_R32F, false};
-  return gpu_texture_create(&map->water, &water, error) &&
-         gpu_texture_create(&map->half_blurred, &half_blurred, error) &&
-         gpu_texture_create(&map->blurred, &blurred, error) && gpu_texture_create(&map->relief, &relief, error) &&
-         gpu_texture_create(&map->solid, &solid, error) &&
-         gpu_target_create(&map->water_target, &(GpuTargetDesc){.label = "sun map: water", .colour = {&map->water}},
-                           error) &&
-         gpu_target_create(&map->solid_target, &(GpuTargetDesc){.label = "sun map: obstacles", .colour = {&map->solid}},
-                           error);
+  const GpuTextureDesc descs[] = {
+      {"sun map: raw splats", WATER_SIZE, WATER_SIZE, GPU_RGBA32F, false},
+      {"sun map: half blurred", WATER_SIZE, WATER_SIZE, GPU_RGBA32F, false},
+      {"sun map: blurred", WATER_SIZE, WATER_SIZE, GPU_RGBA32F, false},
+      {"sun map: water", WATER_SIZE, WATER_SIZE, GPU_RGBA32F, true},
+      {"sun map: normal", WATER_SIZE, WATER_SIZE, GPU_RGBA32F, true},
+      {"sun map: obstacles", SOLID_SIZE, SOLID_SIZE, GPU_R32F, false},
+  };
+  GpuTexture *const textures[] = {&map->raw, &map->half_blurred, &map->blurred, &map->water, &map->normal, &map->solid};
+  for (size_t i = 0; i < sizeof descs / sizeof descs[0]; ++i) {
+    if (!gpu_texture_create(textures[i], &descs[i], error)) return false;
+  }
+  const GpuTargetDesc raw = {.label = "sun map: water", .colour = {&map->raw}};
+  const GpuTargetDesc solid = {.label = "sun map: obstacles", .colour = {&map->solid}};
+  return gpu_target_create(&map->raw_target, &raw, error) && gpu_target_create(&map->solid_target, &solid, error);
 }
 
 void render_sun_map_destroy(RenderPicture *picture) {
   RenderSunMap *map = &picture->sun_map;
-  gpu_program_destroy(&map->water_program);
+  gpu_program_destroy(&map->splat_program);
   gpu_program_destroy(&map->blur_program[0]);
   gpu_program_destroy(&map->blur_program[1]);
   gpu_program_destroy(&map->relief_program);
   gpu_program_destroy(&map->solid_program);
-  gpu_texture_destroy(&map->water);
+  gpu_texture_destroy(&map->raw);
   gpu_texture_destroy(&map->half_blurred);
   gpu_texture_destroy(&map->blurred);
-  gpu_texture_destroy(&map->relief);
+  gpu_texture_destroy(&map->water);
+  gpu_texture_destroy(&map->normal);
   gpu_texture_destroy(&map->solid);
-  gpu_target_destroy(&map->water_target);
+  gpu_target_destroy(&map->raw_target);
   gpu_target_destroy(&map->solid_target);
 }
 
@@ -54,19 +57,19 @@ static bool prepare_smoothing(RenderSunMap *map, RenderError *error) {
 
 // One compute pass over the map.
 static void filter(RenderPicture *picture, const GpuProgram *program, const GpuTexture *in, const GpuTexture *out,
-                   const float sigma[4]) {
+                   const GpuTexture *second_out, const float sigma[4]) {
   gpu_dispatch(
       picture->gpu,
       &(GpuDispatch){
           .program = program,
-          .output = out,
+          .output = {out, second_out},
           .width = WATER_SIZE,
           .height = WATER_SIZE,
           .in = {.textures = {in}, .frame = &picture->uniforms, .params = sigma, .params_size = 4 * sizeof(float)},
       });
 }
 
-// Input: the raw map. Output: the smoothed one and its relief.
+// Input: the raw map. Output: water and normal.
 static void smooth(RenderPicture *picture) {
   RenderSunMap *map = &picture->sun_map;
   // About one and a half particle spacings, and neither less than a texel nor more than the kernel is made for.
@@ -75,9 +78,9 @@ static void smooth(RenderPicture *picture) {
     const float texels = 3 * picture->frame->particle_radius * WATER_SIZE / picture->block.sun_map[i];
     sigma[i] = texels > 1 ? (texels < 12 ? texels : 12) : 1;
   }
-  filter(picture, &map->blur_program[0], &map->water, &map->half_blurred, sigma);
-  filter(picture, &map->blur_program[1], &map->half_blurred, &map->blurred, sigma);
-  filter(picture, &map->relief_program, &map->blurred, &map->relief, sigma);
+  filter(picture, &map->blur_program[0], &map->raw, &map->half_blurred, NULL, sigma);
+  filter(picture, &map->blur_program[1], &map->half_blurred, &map->blurred, NULL, sigma);
+  filter(picture, &map->relief_program, &map->blurred, &map->water, &map->normal, sigma);
 }
 
 // ---- Obstacles -------------------------------------------------------------------------------------------------------
@@ -105,8 +108,8 @@ bool render_sun_map_draw(RenderPicture *picture, RenderError *error) {
   if (picture->obstacles.count > 0 && !draw_solids(picture, error)) return false;
   if (picture->particles.count == 0) return true;
   if (!prepare_smoothing(&picture->sun_map, error)) return false;
-  if (!render_splat_sun(picture, &picture->sun_map.water_program, settings->points.scale,
-                        &picture->sun_map.water_target, error)) {
+  if (!render_splat_sun(picture, &picture->sun_map.splat_program, settings->points.scale, &picture->sun_map.raw_target,
+                        error)) {
     return false;
   }
   smooth(picture);

@@ -1,6 +1,7 @@
 // The points style's picture: the sphere at each pixel as a bead of water. Light that comes through from behind is
 // absorbed along the way, the water scatters some sunlight itself, and its surface mirrors sky and sun.
 #include "frame.glsl"
+#define TILES 32.0
 #include "screen.glsl"
 
 #ifdef FRAGMENT_STAGE
@@ -25,7 +26,7 @@ vec3 behind(vec3 n, float metres, float depth) {
 // At the surface that the sun sees, its smooth relief evens out the beads.
 vec3 smooth_normal(vec3 n, vec3 p, float share) {
 #ifdef WATER_SHADOW
-  vec3 relief = textureLod(sun_relief, sun_place(p), 0.0).xyz;
+  vec3 relief = textureLod(sun_normal, sun_place(p), 0.0).xyz;
   return normalize(mix(n, relief, share));
 #else
   return n;
@@ -34,10 +35,7 @@ vec3 smooth_normal(vec3 n, vec3 p, float share) {
 
 void main() {
   vec4 s = texelFetch(surface, ivec2(gl_FragCoord.xy), 0);
-  if (s.w == 0.0) {
-    result = vec4(texelFetch(background, ivec2(gl_FragCoord.xy), 0).rgb, 1.0);
-    return;
-  }
+  if (s.w == 0.0) discard; // the background shows
   vec4 colour = texelFetch(tint, ivec2(gl_FragCoord.xy), 0);
   float metres = textureLod(thickness, place * 0.5 + 0.5, 0.0).r;
   vec3 ray = to_world(view_ray(place));

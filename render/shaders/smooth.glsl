@@ -4,6 +4,7 @@
 #include "screen.glsl"
 
 #ifdef FRAGMENT_STAGE
+#include "curve.glsl"
 layout(binding = 0) uniform sampler2D toned;
 layout(location = 0) out vec4 result;
 
@@ -20,7 +21,7 @@ vec3 antialiased(ivec2 pixel) {
   float sw = luma(texelFetch(toned, clamp(pixel + ivec2(-1, -1), ivec2(0), last), 0).rgb);
   float se = luma(texelFetch(toned, clamp(pixel + ivec2(1, -1), ivec2(0), last), 0).rgb);
   float low = min(m, min(min(nw, ne), min(sw, se))), high = max(m, max(max(nw, ne), max(sw, se)));
-  if (high - low < max(0.03, 0.1 * high)) return middle;
+  if (high - low < max(0.03, 0.1 * high)) return middle; // no edge here
 
   vec2 direction = vec2((nw + ne) - (sw + se), (nw + sw) - (ne + se)); // across the gradient
   float shorten = 1.0 / (min(abs(direction.x), abs(direction.y)) + max(0.03125 * (nw + ne + sw + se), 0.0078));
@@ -33,17 +34,7 @@ vec3 antialiased(ivec2 pixel) {
   return brightness < low || brightness > high ? two : four;
 }
 
-// Triangular noise of one step of eight bits hides banding; the same for the same pixel every time.
-float dither(uvec2 p) {
-  uint h = p.x * 1664525u + p.y * 22695477u + 1013904223u;
-  h = (h ^ (h >> 15)) * 2246822519u;
-  h = (h ^ (h >> 13)) * 3266489917u;
-  h ^= h >> 16;
-  return (float(h & 0xffffu) + float(h >> 16)) / 65535.0 - 1.0;
-}
-
 void main() {
-  ivec2 pixel = ivec2(gl_FragCoord.xy);
-  result = vec4(antialiased(pixel) + dither(uvec2(pixel)) * 0.5 / 255.0, 1.0);
+  result = vec4(antialiased(ivec2(gl_FragCoord.xy)) + dither(uvec2(gl_FragCoord.xy)), 1.0);
 }
 #endif

@@ -2,6 +2,7 @@
 // THICKNESS (metres of water along the eye's ray, added) or SUN (the same along the sun's rays, and the height of the
 // nearest surface).
 #include "frame.glsl"
+#include "sphere.glsl"
 
 layout(std140, binding = 1) uniform Splat {
   vec4 splat;           // radius factor, water per chord, target size in pixels
@@ -19,19 +20,6 @@ noperspective out vec2 at; // SURFACE, THICKNESS: x and y of the pixel's ray; SU
 
 const vec2 CORNERS[6] = vec2[6](vec2(-1, -1), vec2(1, -1), vec2(1, 1), vec2(-1, -1), vec2(1, 1), vec2(-1, 1));
 
-// Tangents of the directions in which the sphere begins and ends, as seen from the eye along one axis:
-// x is the centre's coordinate on that axis, d its depth.
-vec2 tangents(float x, float d, float r) {
-  float root = r * sqrt(x * x + d * d - r * r);
-  return vec2(x * d - root, x * d + root) / (d * d - r * r);
-}
-
-// Wholly beyond one of the four sides of the view, or nothing of it in front of the eye?
-bool outside(vec3 c, float r) {
-  vec2 side = (abs(c.xy) + c.z * lens.xy) * inversesqrt(1.0 + lens.xy * lens.xy);
-  return any(greaterThan(side, vec2(r))) || -c.z + r < eye.w;
-}
-
 void main() {
   int index = gl_VertexID / 6;
   vec2 corner = CORNERS[gl_VertexID % 6];
@@ -48,16 +36,9 @@ void main() {
 #else
   vec3 c = to_view(s.xyz);
   sphere = vec4(c, r);
-  // The whole screen for the few spheres that reach behind the eye; nothing for those around it.
-  vec2 low = -lens.xy, high = lens.xy;
-  if (-c.z > r * 1.001) {
-    vec2 across = tangents(c.x, -c.z, r), up = tangents(c.y, -c.z, r);
-    low = max(low, vec2(across.x, up.x));
-    high = min(high, vec2(across.y, up.y));
-  }
-  at = mix(low, high, corner * 0.5 + 0.5);
-  bool hidden = outside(c, r) || dot(c, c) < r * r;
-  gl_Position = hidden ? vec4(2.0, 2.0, 0.0, 1.0) : vec4(at / lens.xy, 0.0, 1.0);
+  vec4 bounds = bounds_of(c, r);
+  at = mix(bounds.xy, bounds.zw, corner * 0.5 + 0.5);
+  gl_Position = hidden(c, r) ? vec4(2.0, 2.0, 0.0, 1.0) : vec4(at / lens.xy, 0.0, 1.0);
 #endif
 }
 #endif

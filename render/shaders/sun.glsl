@@ -1,7 +1,7 @@
 // How much sunlight reaches a point: shadows of obstacles, and what the water above it lets through.
 #ifdef WATER_SHADOW
-layout(binding = 5) uniform sampler2D sun_relief; // smooth normal of the water, focus of the light below it
-layout(binding = 6) uniform sampler2D sun_water;  // thickness, height towards the sun, coverage
+layout(binding = 5) uniform sampler2D sun_normal; // of the water's smooth surface
+layout(binding = 6) uniform sampler2D sun_water;  // thickness, height towards the sun, coverage, focus
 #endif
 #ifdef SOLID_SHADOW
 layout(binding = 7) uniform sampler2D sun_solid;  // height of the nearest obstacle towards the sun
@@ -54,7 +54,7 @@ SunLight sun_light(vec3 p) {
     light.below = water.y - dot(p, sun_direction.xyz);
     light.path = clamp(light.below, 0.0, water.x);
     light.direct = exp(-(absorption.rgb + SCATTER) * light.path);
-    light.focus = mix(1.0, textureLod(sun_relief, sun_place(p), 0.0).w, light.path / water.x);
+    light.focus = mix(1.0, water.w, light.path / water.x);
     light.diffuse = exp(-absorption.rgb * 0.7 * light.path);
   }
 #endif

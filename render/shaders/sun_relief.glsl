@@ -5,7 +5,8 @@
 #ifdef COMPUTE_STAGE
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 0) uniform sampler2D map;      // thickness, height, coverage
-layout(binding = 0, rgba32f) writeonly uniform image2D result; // normal; focus
+layout(binding = 0, rgba32f) writeonly uniform image2D water;  // thickness, height, coverage, focus
+layout(binding = 1, rgba32f) writeonly uniform image2D normals;
 
 float height(ivec2 at, float fallback) {
   vec4 m = texelFetch(map, clamp(at, ivec2(0), textureSize(map, 0) - 1), 0);
@@ -18,7 +19,8 @@ void main() {
   if (any(greaterThanEqual(at, size))) return;
   vec4 m = texelFetch(map, at, 0);
   if (m.z <= 0.0) {
-    imageStore(result, at, vec4(sun_direction.xyz, 1.0));
+    imageStore(water, at, vec4(m.xyz, 1.0));
+    imageStore(normals, at, vec4(sun_direction.xyz, 0.0));
     return;
   }
   vec2 d = sun_map.xy / vec2(size); // metres per texel
@@ -33,8 +35,9 @@ void main() {
   float huv = (ne - nw - se + sw) / (4.0 * d.x * d.y);
   float k = m.x * sun_map.z;
   float spread = (1.0 + k * huu) * (1.0 + k * hvv) - k * k * huv * huv;
-  float focus = clamp(1.0 / max(abs(spread), 1e-3), 0.55, 2.2);
+  float focus = clamp(1.0 / max(abs(spread), 1e-3), 0.7, 1.9);
   // At its rim the water's height says nothing about its slope.
-  imageStore(result, at, vec4(normalize(normal), mix(1.0, focus, smoothstep(0.9, 1.0, m.z))));
+  imageStore(water, at, vec4(m.xyz, mix(1.0, focus, smoothstep(0.9, 1.0, m.z))));
+  imageStore(normals, at, vec4(normalize(normal), 0.0));
 }
 #endif

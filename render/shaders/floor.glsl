@@ -1,12 +1,24 @@
-// Sky and floor behind everything else.
+// The floor: a plane without end.
 #include "frame.glsl"
-#include "screen.glsl"
+
+#ifdef VERTEX_STAGE
+// Four triangles from the point of the plane nearest to the eye to points at infinity. They only choose the pixels, so
+// that none above the horizon is worked on; the fragment stage meets its ray with the plane exactly.
+void main() {
+  const vec2 WAYS[4] = vec2[4](vec2(1, 0), vec2(0, 1), vec2(-1, 0), vec2(0, -1));
+  int i = gl_VertexID % 3;
+  vec2 way = WAYS[(gl_VertexID / 3 + i / 2) % 4];
+  vec3 p = mat3(world_to_view) * (i == 0 ? vec3(0.0, floor_plane.x - eye.y, 0.0) : vec3(way.x, 0.0, way.y));
+  gl_Position = project(p);
+  if (i != 0) gl_Position.z = 0.0;
+}
+#endif
 
 #ifdef FRAGMENT_STAGE
 #include "sky.glsl"
 #include "sun.glsl"
 
-layout(location = 0) out vec4 result; // linear light; depth along the view axis, 0 for the sky
+layout(location = 0) out vec4 result; // linear light; depth along the view axis
 
 #ifdef FLOOR_CHECKER
 vec3 floor_light(vec3 p, float t) {
@@ -45,23 +57,18 @@ vec3 floor_light(vec3 p, float t) {
   vec3 light = albedo * (sun + sky_average(vec3(0.0, 1.0, 0.0)) * sunlit.diffuse);
   float reach = length(p.xz - eye.xz) / floor_plane.z;
   float grazing = 1.0 - 1.0 / slant;
-  light = mix(light, sky(normalize(ray * vec3(1.0, -1.0, 1.0))), 0.02 + 0.25 * pow(grazing, 8.0)); // a little polished
-  vec3 haze = sky(normalize(vec3(ray.x, 0.0, ray.z)));
+  vec3 haze = sky_at_horizon(normalize(vec3(ray.x, 0.0, ray.z)));
+  grazing *= grazing * grazing;
+  light = mix(light, haze, 0.02 + 0.2 * grazing * grazing); // a little polished
   return mix(haze, light, exp(-reach * reach));
 }
 #endif
 
 void main() {
-  vec3 ray = to_world(view_ray(place));
-#ifndef FLOOR_NONE
+  vec3 ray = to_world(view_ray(gl_FragCoord.xy / lens.zw * 2.0 - 1.0));
   float t = (floor_plane.x - eye.y) / ray.y;
-  if (t > eye.w && t < FAR) {
-    result = vec4(floor_light(eye.xyz + ray * t, t), t);
-    gl_FragDepth = depth_of(t);
-    return;
-  }
-#endif
-  result = vec4(sky(normalize(ray)), 0.0);
-  gl_FragDepth = 0.0;
+  if (!(t > eye.w && t < FAR)) discard; // at the horizon
+  result = vec4(floor_light(eye.xyz + ray * t, t), t);
+  gl_FragDepth = depth_of(t);
 }
 #endif
