@@ -107,8 +107,7 @@ static bool open_bench(Bench *bench, const Options *options, AppError *error) {
   bench->view = scene_view(&bench->scene);
   if (options->style) bench->settings.style = options->style;
   bench->frame_seconds = 1 / options->fps;
-  bench->frames =
-      options->last_frame > options->first_frame ? options->last_frame - options->first_frame : DEFAULT_FRAMES;
+  bench->frames = options->last_frame >= 0 ? options->last_frame - options->first_frame + 1 : DEFAULT_FRAMES;
 
   SimError sim_error;
   SimWorldDef def = scene_world_def(&bench->scene);
