@@ -12,9 +12,9 @@
 typedef enum ContextKind { CONTEXT_AUTO, CONTEXT_GLFW, CONTEXT_EGL, CONTEXT_OSMESA } ContextKind;
 
 typedef struct ContextBackend {
-  const char *name;            ///< as in --context
+  const char *name; ///< as in --context
   ContextKind kind;
-  const char *summary;         ///< one line for `lido list`
+  const char *summary; ///< one line for `lido list`
   /// Does it work on this machine? Otherwise `why` says what is missing, in one line. Leaves no context behind.
   bool (*available)(char *why, size_t size);
   /// Make an OpenGL 4.5 core context without a visible window, current on this thread. NULL and *error on failure.
@@ -23,7 +23,7 @@ typedef struct ContextBackend {
 } ContextBackend;
 
 int context_backend_count(void);
-const ContextBackend *context_backend(int index);               ///< in the order of preference for headless work
+const ContextBackend *context_backend(int index);                ///< in the order of preference for headless work
 const ContextBackend *context_backend_of_kind(ContextKind kind); ///< NULL: not built in
 
 typedef struct Context Context;

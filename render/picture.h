@@ -17,29 +17,29 @@ typedef struct RenderPicture RenderPicture;
 
 /// The Frame block of frame.glsl, std140. Constant during a picture.
 typedef struct RenderFrameBlock {
-  float world_to_view[16];     // column major; rigid
-  float eye[4];                // m; near distance
-  float lens[4];               // tan of half the angle of view in x, y; picture size in pixels
-  float sun_direction[4];      // unit, towards the sun; 1 when there is a sun, else 0
-  float sun_colour[4];         // irradiance
-  float sun_u[4], sun_v[4];    // dot(p, xyz) + w is the place in the sun map, [0, 1]
-  float sun_map[4];            // metres across the map in u and v; 1 − 1/n; –
-  float absorption[4];         // 1/m; reflectance at normal incidence F0
-  float sky_zenith[4];         // of the gradient sky; –
-  float sky_horizon[4];        // of the gradient sky; –
-  float floor_colour[2][4];    // of the checker; –
-  float floor_plane[4];        // level (m), tile size (m), distance at which tiles fade out (m), –
-  float container_min[4];      // m; water level of the container, 1 when it is drawn, else 0
-  float container_max[4];      // m; size of the scene (m)
+  float world_to_view[16];  // column major; rigid
+  float eye[4];             // m; near distance
+  float lens[4];            // tan of half the angle of view in x, y; picture size in pixels
+  float sun_direction[4];   // unit, towards the sun; 1 when there is a sun, else 0
+  float sun_colour[4];      // irradiance
+  float sun_u[4], sun_v[4]; // dot(p, xyz) + w is the place in the sun map, [0, 1]
+  float sun_map[4];         // metres across the map in u and v; 1 − 1/n; –
+  float absorption[4];      // 1/m; reflectance at normal incidence F0
+  float sky_zenith[4];      // of the gradient sky; –
+  float sky_horizon[4];     // of the gradient sky; –
+  float floor_colour[2][4]; // of the checker; –
+  float floor_plane[4];     // level (m), tile size (m), distance at which tiles fade out (m), –
+  float container_min[4];   // m; water level of the container, 1 when it is drawn, else 0
+  float container_max[4];   // m; size of the scene (m)
 } RenderFrameBlock;
 
 /// The particles on the GPU: only those with a sensible position.
 typedef struct RenderParticles {
-  GpuBuffer spheres;           // (count) vec4: centre, radius of the particle at rest; m
-  GpuBuffer colours;           // (count) vec4: colour, linear; spray 0 … 1
+  GpuBuffer spheres; // (count) vec4: centre, radius of the particle at rest; m
+  GpuBuffer colours; // (count) vec4: colour, linear; spray 0 … 1
   int32_t count;
   float bounds_min[3], bounds_max[3]; // m, of the particles taken; min > max when there are none
-  float *staging;              // (capacity, 8)
+  float *staging;                     // (capacity, 8)
   int32_t capacity;
 } RenderParticles;
 bool render_particles_upload(RenderParticles *particles, const SimFrame *frame, RenderError *error);
@@ -49,7 +49,7 @@ void render_particles_destroy(RenderParticles *particles);
 #define RENDER_TILE_SIZE 32
 typedef struct RenderTiles {
   GpuProgram program;
-  GpuBuffer mask;              // (rows, columns) uint32: 1 or 0
+  GpuBuffer mask; // (rows, columns) uint32: 1 or 0
   int32_t columns, rows;
 } RenderTiles;
 /// Input: the particles, drawn with `scale` times their radius. Output: picture->tiles.
@@ -58,7 +58,7 @@ void render_tiles_destroy(RenderTiles *tiles);
 
 /// Solid bodies on the GPU, see obstacles.glsl.
 typedef struct RenderObstacles {
-  GpuBuffer bodies;            // (count) struct Body
+  GpuBuffer bodies; // (count) struct Body
   int32_t count;
   float bounds_min[3], bounds_max[3]; // m; min > max when there are none
 } RenderObstacles;
@@ -66,27 +66,27 @@ typedef struct RenderObstacles {
 /// The scene as the sun sees it, from infinitely far away. Heights are metres towards the sun.
 typedef struct RenderSunMap {
   GpuProgram splat_program, blur_program[2], relief_program, solid_program;
-  GpuTexture raw;              // of the spheres: thickness (m), –, –, height
+  GpuTexture raw;                   // of the spheres: thickness (m), –, –, height
   GpuTexture half_blurred, blurred; // thickness, height, coverage, –
-  GpuTexture water;            // thickness, height, coverage, focus of the light on what lies below
-  GpuTexture normal;           // of the smooth surface
-  GpuTexture solid;            // height of the nearest obstacle
+  GpuTexture water;                 // thickness, height, coverage, focus of the light on what lies below
+  GpuTexture normal;                // of the smooth surface
+  GpuTexture solid;                 // height of the nearest obstacle
   GpuTarget raw_target, solid_target;
 } RenderSunMap;
 
 /// Sky, floor, obstacles and the back edges of the container.
 typedef struct RenderBackground {
   GpuProgram sky_program, floor_program, obstacle_program;
-  GpuProgram edge_program[2];  // back, front
+  GpuProgram edge_program[2]; // back, front
   GpuProgram pane_program;
-  GpuTexture colour;           // rgb: linear light; a: depth along the view axis (m), 0 for the sky
+  GpuTexture colour; // rgb: linear light; a: depth along the view axis (m), 0 for the sky
   GpuTarget target;
 } RenderBackground;
 
 /// From linear light to bytes.
 typedef struct RenderCompose {
   GpuProgram tone_program, smooth_program, layer_program;
-  GpuTexture toned, final;     // before and after antialiasing
+  GpuTexture toned, final; // before and after antialiasing
   GpuTarget toned_target, final_target;
 } RenderCompose;
 
@@ -95,18 +95,18 @@ struct RenderPicture {
   const SimFrame *frame;
   const RenderSettings *settings;
   int32_t width, height;
-  GpuBuffer uniforms;          // the Frame block
-  RenderFrameBlock block;      // what is in it
-  char defines[256];           // compile-time choices: sky, floor, sun, shadow …
+  GpuBuffer uniforms;     // the Frame block
+  RenderFrameBlock block; // what is in it
+  char defines[256];      // compile-time choices: sky, floor, sun, shadow …
   RenderParticles particles;
   RenderTiles tiles;
   RenderObstacles obstacles;
   RenderSunMap sun_map;
   RenderBackground background;
   RenderCompose compose;
-  GpuTexture depth;            // reversed depth of everything drawn so far: background, then the style's surface
-  GpuTexture colour;           // the style's picture in linear light
-  GpuTarget target;            // colour and depth: where a style draws its picture, over a copy of the background
+  GpuTexture depth;  // reversed depth of everything drawn so far: background, then the style's surface
+  GpuTexture colour; // the style's picture in linear light
+  GpuTarget target;  // colour and depth: where a style draws its picture, over a copy of the background
 };
 
 /// Camera, sun and environment into the Frame block and the compile-time choices.
@@ -126,19 +126,19 @@ bool render_front_glass_draw(RenderPicture *picture, RenderError *error);
 
 /// How a layer is turned into something to look at.
 typedef enum RenderMap {
-  RENDER_MAP_DEPTH = 0,        // metres, near bright to far dark on a repeating hue; 0 black
-  RENDER_MAP_NORMAL,           // n·0.5 + 0.5; zero vector black
-  RENDER_MAP_SCALAR,           // from 0 (dark blue) over green to `top` (yellow)
-  RENDER_MAP_COLOUR            // linear light, tone-mapped
+  RENDER_MAP_DEPTH = 0, // metres, near bright to far dark on a repeating hue; 0 black
+  RENDER_MAP_NORMAL,    // n·0.5 + 0.5; zero vector black
+  RENDER_MAP_SCALAR,    // from 0 (dark blue) over green to `top` (yellow)
+  RENDER_MAP_COLOUR     // linear light, tone-mapped
 } RenderMap;
 
 typedef struct RenderLayer {
   const char *name;
-  const char *summary;         // what it is and its unit
+  const char *summary; // what it is and its unit
   RenderMap map;
-  size_t texture;              // offset of the GpuTexture in the style's state (or in RenderPicture)
-  int32_t channel, channels;   // first channel and how many: 1 or 3
-  float top;                   // of RENDER_MAP_SCALAR
+  size_t texture;            // offset of the GpuTexture in the style's state (or in RenderPicture)
+  int32_t channel, channels; // first channel and how many: 1 or 3
+  float top;                 // of RENDER_MAP_SCALAR
 } RenderLayer;
 
 bool render_compose_resize(RenderPicture *picture, RenderError *error);

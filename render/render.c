@@ -20,6 +20,7 @@ struct Render {
   const RenderStyle *style; // of the last picture, NULL before the first
   const GpuTexture *shown;  // texture of the shown layer in the last picture
   const RenderLayer *layer; // the shown layer in the last picture
+  bool broken;              // the last resize failed
   char wanted_layer[64];    // "" for the picture
 };
 
@@ -94,9 +95,10 @@ void render_destroy(Render *render) {
 
 bool render_resize(Render *render, int32_t width, int32_t height, RenderError *error) {
   if (!check_size(width, height, error)) return false;
-  if (width == render->picture.width && height == render->picture.height) return true;
+  if (width == render->picture.width && height == render->picture.height && !render->broken) return true;
   destroy_styles(render); // they come back with the next picture
-  return resize_picture(&render->picture, width, height, error);
+  render->broken = !resize_picture(&render->picture, width, height, error);
+  return !render->broken;
 }
 
 // ---- Drawing ---------------------------------------------------------------------------------------------------------
@@ -171,6 +173,7 @@ static bool draw_passes(Render *render, const RenderView *view, void *state, Ren
 
 bool render_draw(Render *render, const SimFrame *frame, const RenderView *view, const RenderSettings *settings,
                  RenderError *error) {
+  if (render->broken) return gpu_fail(error, "the renderer has no picture to draw into since its resize failed");
   if (!render_settings_check(settings, error) || !render_view_check(view, error)) return false;
   const RenderStyle *style = render_style_find(settings->style);
   if (style == NULL) {
@@ -194,6 +197,7 @@ bool render_draw(Render *render, const SimFrame *frame, const RenderView *view, 
 
 void render_read_rgb8(Render *render, uint8_t *rgb) {
   const RenderPicture *picture = &render->picture;
+  if (render->broken) return;
   gpu_read_rgb8(&picture->compose.final_target, rgb);
   // GL counts rows from the bottom.
   const size_t row = 3 * (size_t)picture->width;
@@ -208,6 +212,7 @@ void render_read_rgb8(Render *render, uint8_t *rgb) {
 }
 
 void render_present(Render *render, int32_t window_width, int32_t window_height) {
+  if (render->broken) return;
   gpu_present(&render->picture.compose.final_target, window_width, window_height);
 }
 
@@ -247,6 +252,7 @@ bool render_read_layer(Render *render, float *values, int32_t *channels) {
 }
 
 void render_text(Render *render, int32_t x, int32_t y, int32_t scale, const char *text) {
+  if (render->broken) return;
   render_text_draw(&render->text, &render->gpu, &render->picture.compose.final_target, x, y, scale, text);
   gpu_collect_errors(&render->gpu);
 }

@@ -55,7 +55,7 @@ typedef struct RenderSettings {
 
   // light
   float sun_direction[3];      ///< towards the sun, need not be unit, default (−0.45, 0.75, 0.5): late morning
-  float sun_colour[3];         ///< irradiance, linear, default (1, 0.95, 0.86) × 3
+  float sun_colour[3];         ///< irradiance, linear, default (3.8, 3.5, 3.0)
   bool sun;                    ///< default true; off: neither sunlight nor glints
   bool shadow;                 ///< default true
 
@@ -69,7 +69,7 @@ typedef struct RenderSettings {
   bool container_visible;      ///< thin bright edges of the tank, default true
 
   // liquid
-  float absorption[3];         ///< 1/m per channel, red > green > blue, default (1.8, 0.42, 0.30)
+  float absorption[3];         ///< 1/m per channel, red > green > blue, default (3.2, 0.68, 0.46)
   float refractive_index;      ///< of the liquid, default 1.333, range [1, 3]
 
   // picture
@@ -86,6 +86,7 @@ typedef struct Render Render;
 /// NULL and *error when there is no OpenGL 4.5 core context, the size is out of [1, 16384], or a shader fails.
 Render *render_create(int32_t width, int32_t height, RenderError *error);
 void render_destroy(Render *render); ///< NULL is allowed; the context must still be current
+/// After a failed resize (out of memory) nothing can be drawn until one succeeds.
 bool render_resize(Render *render, int32_t width, int32_t height, RenderError *error);
 
 /// Draw one frame. Particles that are NaN or out of view are skipped; no particle is an empty tank, not an error.

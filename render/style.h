@@ -9,17 +9,17 @@
 
 typedef struct RenderStyle {
   const char *name;
-  const char *summary;         // one line: what it is, after whom
-  unsigned needs;              // SimNeed bits: what draw reads from the frame beyond what is always there
-  size_t state_size;           // bytes
-  const RenderLayer *layers;   // intermediates that can be shown and read
+  const char *summary;       // one line: what it is, after whom
+  unsigned needs;            // SimNeed bits: what draw reads from the frame beyond what is always there
+  size_t state_size;         // bytes
+  const RenderLayer *layers; // intermediates that can be shown and read
   int32_t layer_count;
   bool (*resize)(void *state, const RenderPicture *picture, RenderError *error); // make what depends on the size
-  bool (*draw)(void *state, RenderPicture *picture, RenderError *error); // into picture->target
+  bool (*draw)(void *state, RenderPicture *picture, RenderError *error);         // into picture->target
   void (*destroy)(void *state);
 } RenderStyle;
 
-extern const RenderStyle *const render_styles[]; // ends with NULL
+extern const RenderStyle *const render_styles[];        // ends with NULL
 const RenderStyle *render_style_find(const char *name); // NULL when there is none
 
 #endif

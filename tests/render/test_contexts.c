@@ -1,6 +1,7 @@
 // The same frame under different contexts is the same picture.
 #include "tests/render/harness.h"
 
+#include <epoxy/egl.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -91,12 +92,37 @@ static void test_old_opengl_is_refused_in_one_sentence(void **state) {
   assert_non_null(strstr(error.message, "4.5"));
 }
 
+// The renderer itself turns an older context away as well, whoever made it.
+static void test_renderer_needs_4_5(void **state) {
+  (void)state;
+  setenv("MESA_GL_VERSION_OVERRIDE", "3.3", 1);
+  const EGLDisplay display = eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, NULL);
+  const EGLint wanted[] = {EGL_CONTEXT_MAJOR_VERSION, 3, EGL_CONTEXT_MINOR_VERSION, 3, EGL_NONE};
+  EGLContext context = EGL_NO_CONTEXT;
+  if (display != EGL_NO_DISPLAY && eglInitialize(display, NULL, NULL) && eglBindAPI(EGL_OPENGL_API)) {
+    context = eglCreateContext(display, NULL, EGL_NO_CONTEXT, wanted);
+  }
+  unsetenv("MESA_GL_VERSION_OVERRIDE");
+  if (context == EGL_NO_CONTEXT || !eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context)) skip();
+  RenderError error = {0};
+  Render *render = render_create(8, 8, &error);
+  const bool refused = render == NULL; // a driver that is not Mesa may well give 4.5 here
+  render_destroy(render);
+  eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+  eglDestroyContext(display, context);
+  eglTerminate(display);
+  if (!refused) skip();
+  assert_non_null(strstr(error.message, "OpenGL 4.5 is needed"));
+  assert_null(strchr(error.message, '\n'));
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_the_table),
       cmocka_unit_test(test_egl_and_osmesa_agree),
       cmocka_unit_test(test_contexts_follow_each_other),
       cmocka_unit_test(test_old_opengl_is_refused_in_one_sentence),
+      cmocka_unit_test(test_renderer_needs_4_5),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
