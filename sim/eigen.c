@@ -5,6 +5,7 @@
 // Double precision inside, so that single-precision input comes out right to its last digits even where two
 // eigenvalues fall together. A multiple of the identity gives the coordinate axes.
 #include <math.h>
+#include <stdbool.h>
 
 #include "sim/surface.h"
 
@@ -69,8 +70,12 @@ static void identity(float value, float values[3], float vector[3][3]) {
 
 void sim_eigen_symmetric(const float matrix[6], float value[3], float vector[3][3]) {
   double m[6], largest = 0;
-  for (int k = 0; k < 6; k++) largest = fmax(largest, fabs((double)matrix[k]));
-  if (!(largest > 0) || !isfinite(largest)) {
+  bool finite = true;
+  for (int k = 0; k < 6; k++) {
+    largest = fmax(largest, fabs((double)matrix[k]));
+    finite = finite && isfinite(matrix[k]);
+  }
+  if (!(largest > 0) || !finite) {
     identity(0, value, vector);
     return;
   }

@@ -9,7 +9,7 @@ typedef struct SimSorted {
   float *position[3];      ///< m, the state at the start of the substep
   float *velocity[3];      ///< m/s, likewise; both change only when a substep has succeeded
   float *predicted[3];     ///< m, written by predict, corrected by the solver
-  float *next_velocity[3]; ///< m/s, written by predict and velocity
+  float *next_velocity[3]; ///< m/s, written by predict, correct and viscosity
   uint32_t *id;
 } SimSorted;
 

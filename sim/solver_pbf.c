@@ -35,8 +35,12 @@ static void predict_kernel(int32_t begin, int32_t end, const void *context) {
       now->next_velocity[k][i] = v;
       to[k] = from[k] + step->dt * v;
     }
+    const float free[3] = {to[0], to[1], to[2]};
     sim_boundary_clamp(step->boundary, from, to);
-    for (int k = 0; k < 3; k++) now->predicted[k][i] = to[k];
+    for (int k = 0; k < 3; k++) {
+      now->predicted[k][i] = to[k];
+      if (to[k] != free[k]) now->next_velocity[k][i] += (to[k] - free[k]) * step->inverse_dt;
+    }
   }
 }
 
@@ -196,20 +200,23 @@ static void correction(const SimStep *step, int32_t i, float move[3]) {
   for (int k = 0; k < 3; k++) move[k] = lane_sum(sum[k]) + p->repulsion[k][i] + own * p->solid_gradient[k][i];
 }
 
+// A correction changes the velocity by Δp/dt, and where the clamp had a say, by what was really moved. Taking Δp itself
+// instead of the difference of rounded positions keeps the sum over all particles, the momentum, to the last digits.
 static void correct_kernel(int32_t begin, int32_t end, const void *context, double *longest) {
   const SimStep *step = context;
   SimParticles *p = step->particles;
   for (int32_t i = begin; i < end; i++) {
-    float from[3], to[3], move[3], d2 = 0;
+    float from[3], free[3], to[3], move[3], d2 = 0;
     correction(step, i, move);
     for (int k = 0; k < 3; k++) {
       from[k] = p->now.position[k][i];
-      to[k] = p->now.predicted[k][i] + move[k];
+      to[k] = free[k] = p->now.predicted[k][i] + move[k];
     }
     sim_boundary_clamp(step->boundary, from, to);
     for (int k = 0; k < 3; k++) {
-      float moved = to[k] - p->now.predicted[k][i];
-      d2 += moved * moved;
+      if (to[k] != free[k]) move[k] = to[k] - p->now.predicted[k][i];
+      p->now.next_velocity[k][i] += move[k] * step->inverse_dt;
+      d2 += move[k] * move[k];
       p->scratch[k][i] = to[k];
     }
     if (!((double)d2 <= longest[0])) longest[0] = isnan(d2) ? INFINITY : (double)d2;
@@ -232,23 +239,7 @@ double sim_pbf_correct(const SimStep *step) {
   return sqrt(longest);
 }
 
-// ---- Velocity --------------------------------------------------------------------------------------------------------
-
-// x + dt v* is computed as in predict, so the difference is exactly zero where nothing was corrected: free fall keeps its
-// momentum to the last bit of v*.
-static void velocity_kernel(int32_t begin, int32_t end, const void *context) {
-  const SimStep *step = context;
-  SimSorted *now = &step->particles->now;
-  for (int k = 0; k < 3; k++)
-    for (int32_t i = begin; i < end; i++) {
-      float v = now->next_velocity[k][i], free_flight = now->position[k][i] + step->dt * v;
-      now->next_velocity[k][i] = v + (now->predicted[k][i] - free_flight) * step->inverse_dt;
-    }
-}
-
-void sim_pbf_velocity(const SimStep *step) {
-  sim_parallel_for(step->threads, step->particles->count, velocity_kernel, step);
-}
+// ---- Viscosity -------------------------------------------------------------------------------------------------------
 
 static void viscosity_kernel(int32_t begin, int32_t end, const void *context) {
   const SimStep *step = context;

@@ -2,8 +2,8 @@
 //
 // A particle's constraint is C = ρ/ρ0 − 1 ≤ 0 (Eq. 1, as an inequality: water resists compression, a free surface is not
 // pulled together, so particles there do not clump). One Jacobi iteration is pbf_boundary, pbf_density (λ, Eq. 11) and
-// pbf_correct (Δp, Eq. 14, then the hard clamp to the walls). Then pbf_velocity (v from the corrected and clamped
-// positions) and pbf_viscosity (XSPH, Eq. 17).
+// pbf_correct (Δp, Eq. 14, then the hard clamp to the walls, and the velocity that follows from both). Then pbf_viscosity
+// (XSPH, Eq. 17).
 //
 // Damped Jacobi. All particles are corrected at once, and each counts in the constraints of its ~32 neighbours, so the
 // corrections add up: with the full λ of Eq. 11 a ripple of 3.4 spacings (kernel of two spacings) is overcorrected 2.9-fold,
@@ -44,10 +44,8 @@ void sim_pbf_predict(const SimStep *step);
 void sim_pbf_boundary(const SimStep *step);
 /// Density, λ and the pair gradients at the predicted positions.
 void sim_pbf_density(const SimStep *step);
-/// Move the predicted positions by Δp and clamp them. Returns the longest move, m; NaN if a position is not finite.
+/// Move the predicted positions by Δp and clamp them; v* += (what was moved)/dt. Returns the longest move, m; NaN if a position is not finite.
 double sim_pbf_correct(const SimStep *step);
-/// v = v* + (x_corrected − x*)/dt: exactly v* for a particle that nothing corrected.
-void sim_pbf_velocity(const SimStep *step);
 /// XSPH with pair weights that are the same from both sides, so that momentum is kept.
 void sim_pbf_viscosity(const SimStep *step);
 

@@ -80,9 +80,9 @@ static void shape(const Moments *m, float radius, float ellipsoid[6]) {
     sphere(radius, ellipsoid);
     return;
   }
-  float volume = 1;
+  float volume = 1, largest = value[0];
   for (int k = 0; k < 3; k++) {
-    value[k] = fmaxf(value[k] / value[0], 1.0f / LARGEST_RATIO);
+    value[k] = fmaxf(value[k] / largest, 1.0f / LARGEST_RATIO);
     volume *= value[k];
   }
   float scale = radius / cbrtf(volume);

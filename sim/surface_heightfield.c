@@ -15,7 +15,7 @@
 #define ISO_RADIUS 2      // in spacings
 #define STEPS_A_SPACING 4 // samples of a column
 #define BISECTIONS 10
-#define MAX_NODES (1 << 22)
+#define MAX_NODES (1 << 20)
 
 static double level_lattice_value(void) {
   double sum = 0;
@@ -54,14 +54,41 @@ static float potential(const FieldContext *c, const float point[3]) {
   return sum;
 }
 
+// The highest place at or below `below` in the column where φ is not zero; −INFINITY when there is none.
+static double highest_below(const FieldContext *c, float x, float z, double below) {
+  const SimGrid *grid = c->surface->grid;
+  float *const *p = c->surface->position;
+  double r = (double)c->radius, best = -INFINITY;
+  int32_t low[3], high[3];
+  const double centre[3] = {(double)x, below, (double)z};
+  for (int axis = 0; axis < 3; axis++) {
+    low[axis] = axis == 1 ? 0 : sim_grid_index(grid, axis, centre[axis] - r);
+    high[axis] = sim_grid_index(grid, axis, centre[axis] + r);
+  }
+  // From the highest layer of cells down, until what was found lies above all that a lower layer can give.
+  for (int32_t y = high[1]; y >= 0; y--) {
+    if (best > (double)grid->origin[1] + (y + 1.0) * (double)grid->cell_size + r) break;
+    for (int32_t k = low[2]; k <= high[2]; k++) {
+      const int32_t *row = grid->cell_start + ((int64_t)k * grid->size[1] + y) * grid->size[0];
+      for (int32_t j = row[low[0]]; j < row[high[0] + 1]; j++) {
+        double dx = (double)p[0][j] - (double)x, dz = (double)p[2][j] - (double)z, left = r * r - dx * dx - dz * dz;
+        if (left <= 0) continue;
+        double half = sqrt(left), top = (double)p[1][j] + half;
+        if ((double)p[1][j] - half < below) best = fmax(best, fmin(top, below));
+      }
+    }
+  }
+  return best;
+}
+
+// Samples lie at multiples of the step; stretches without water are skipped, however tall.
 static float column_height(const FieldContext *c, float x, float z) {
-  float top = c->surface->bounds_max[1] + c->radius;
-  float samples = ceilf((top - c->floor) / c->step);
-  // A set of particles that is absurdly tall for its spacing is sampled more coarsely, not for ever.
-  float step = samples > 65536 ? (top - c->floor) / 65536 : c->step;
-  for (int32_t k = (int32_t)ceilf((top - c->floor) / step); k >= 0; k--) {
-    float low = c->floor + step * (float)k, high = low + step;
-    if (potential(c, (float[3]){x, low, z}) < c->iso) continue;
+  double base = (double)c->floor, step = (double)c->step, top = (double)c->surface->bounds_max[1] + (double)c->radius;
+  for (double k = ceil((top - base) / step); k >= 0; k--) {
+    float low = (float)(base + step * k), high = (float)(base + step * (k + 1)),
+          value = potential(c, (float[3]){x, low, z});
+    if (value == 0) k = fmin(k, floor((highest_below(c, x, z, base + step * k) - base) / step) + 1);
+    if (value < c->iso) continue;
     for (int b = 0; b < BISECTIONS; b++) {
       float middle = 0.5f * (low + high);
       if (potential(c, (float[3]){x, middle, z}) >= c->iso)

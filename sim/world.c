@@ -194,7 +194,7 @@ static float largest_speed(const SimWorld *world, float *const velocity[3]) {
   return (float)sqrt(fastest);
 }
 
-// Whether the new velocities can be followed; otherwise name the first particle for which they cannot.
+// Whether the velocities can be followed; otherwise name the first particle for which they cannot.
 static bool check(SimWorld *world, SimStage stage, SimError *error) {
   float *const *v = world->particles.now.next_velocity;
   if (largest_speed(world, v) <= world->speed_limit) return true;
@@ -271,7 +271,6 @@ static bool substep(SimWorld *world, float dt, SimError *error) {
   world->profile.neighbour_pairs += world->neighbours.pairs;
   if (!solve_density(world, &step, &since, error)) return false;
 
-  sim_pbf_velocity(&step);
   if (!check(world, SIM_STAGE_velocity, error)) return false;
   lap(world, SIM_STAGE_velocity, &since);
 

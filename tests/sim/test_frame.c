@@ -1,0 +1,204 @@
+// Frames from a world and from particle sets: what is in them, and what is refused.
+#include "sim_test.h"
+
+static void refused(const SimParticleSet *set, const char *named) {
+  SimError error = {""};
+  SimFrameBuffer *buffer = sim_frame_buffer_create();
+  if (sim_frame_from_particles(set, SIM_NEED_ALL, 1, buffer, &error)) fail_msg("accepted although %s is wrong", named);
+  if (!strstr(error.message, named)) fail_msg("the message \"%s\" does not name %s", error.message, named);
+  sim_frame_buffer_destroy(buffer);
+}
+
+static void bad_sets_are_refused(void **state) {
+  (void)state;
+  float position[9] = {0, 0, 0, 1, NAN, 1, 2, 2, 2};
+  SimParticleSet set = {.count = 3, .position = position};
+  refused(&set, "particle 1");
+  position[4] = -INFINITY;
+  refused(&set, "particle 1");
+  position[4] = 1;
+  set.count = -1;
+  refused(&set, "count");
+  set.count = SIM_MAX_PARTICLES + 1;
+  refused(&set, "count");
+  set.count = 3, set.particle_radius = NAN;
+  refused(&set, "particle_radius");
+  set.particle_radius = -0.1f;
+  refused(&set, "particle_radius");
+  set.particle_radius = 0, set.position = NULL;
+  refused(&set, "positions");
+}
+
+// A million particles within one radius would take hours: it is an error, at once.
+static void a_heap_is_refused(void **state) {
+  (void)state;
+  int32_t count = 1000000;
+  float *position = calloc((size_t)count * 3, sizeof(float));
+  SimParticleSet set = {.count = count, .position = position, .particle_radius = 0.1f};
+  refused(&set, "crowded");
+  free(position);
+}
+
+static void empty_and_single_sets(void **state) {
+  (void)state;
+  SimFrameBuffer *buffer = sim_frame_buffer_create();
+  SimError error;
+  const float position[3] = {1, 2, 3};
+  for (int32_t count = 0; count <= 1; count++) {
+    SimParticleSet set = {.index = 4, .time = 0.5, .count = count, .position = position};
+    const SimFrame *frame = sim_frame_from_particles(&set, SIM_NEED_ALL, 1, buffer, &error);
+    assert_non_null(frame);
+    assert_int_equal(frame->count, count);
+    assert_true(frame->index == 4 && frame->time == 0.5 && frame->particle_radius == 0.01f);
+    assert_false(frame->has_container);
+    assert_non_null(frame->ellipsoid);
+    if (count) {
+      assert_true(frame->bounds_min[1] == 2 && frame->container.max[2] == 3);
+      assert_int_equal(frame->particle_class[0], SIM_SPLASH);
+      assert_int_equal(frame->near_surface[0], 1);
+    }
+  }
+  sim_frame_buffer_destroy(buffer);
+  assert_int_equal(sim_bytes_in_use(), 0);
+}
+
+// Every array follows its particle through the sort; what is not given stays out.
+static void attributes_follow_their_particles(void **state) {
+  (void)state;
+  enum { COUNT = 600 };
+  float *position = test_lattice(10, 6, 10, 0.1, 0.4, 2), velocity[3 * COUNT], colour[3 * COUNT], radius[COUNT];
+  uint8_t class[COUNT];
+  uint32_t id[COUNT];
+  for (int i = 0; i < COUNT; i++) {
+    id[i] = (uint32_t)(7 * i + 3);
+    radius[i] = 0.01f * (float)(i % 5 + 1);
+    class[i] = i % 3 == 0;
+    for (int k = 0; k < 3; k++) velocity[3 * i + k] = (float)(i + k), colour[3 * i + k] = (float)i / COUNT;
+  }
+  SimContainer container = {{-1, -1, -1}, {3, 3, 3}};
+  SimParticleSet set = {.count = COUNT, .position = position, .velocity = velocity, .colour = colour, .radius = radius,
+                        .particle_class = class, .id = id, .particle_radius = 0.05f, .container = &container};
+  SimFrameBuffer *buffer = sim_frame_buffer_create();
+  SimError error;
+  const SimFrame *frame = sim_frame_from_particles(&set, SIM_NEED_ALL, 2, buffer, &error);
+  assert_non_null(frame);
+  assert_true(frame->has_container && frame->container.max[0] == 3 && frame->bounds_max[0] < 2);
+  for (int i = 0; i < COUNT; i++) {
+    int from = (int)(frame->id[i] - 3) / 7;
+    assert_memory_equal(frame->position + 3 * i, position + 3 * from, 3 * sizeof(float));
+    assert_memory_equal(frame->velocity + 3 * i, velocity + 3 * from, 3 * sizeof(float));
+    assert_memory_equal(frame->colour + 3 * i, colour + 3 * from, 3 * sizeof(float));
+    assert_true(frame->radius[i] == radius[from]);
+    assert_int_equal(frame->particle_class[i], class[from]);
+  }
+  set = (SimParticleSet){.count = COUNT, .position = position};
+  frame = sim_frame_from_particles(&set, SIM_NEED_NOTHING, 2, buffer, &error);
+  assert_non_null(frame);
+  assert_null(frame->colour);
+  assert_null(frame->radius);
+  assert_null(frame->particle_class);
+  assert_null(frame->smoothed);
+  assert_null(frame->ellipsoid);
+  assert_null(frame->near_surface);
+  assert_int_equal(frame->height_field.size[0], 0);
+  assert_true(frame->velocity[5] == 0);
+  sim_frame_buffer_destroy(buffer);
+  free(position);
+}
+
+// Particles of a world handed back as a set give the same surface: what `lido render` shows of files is what was simulated.
+static void a_set_gives_the_same_surface_as_its_world(void **state) {
+  (void)state;
+  SimBlockDef block;
+  SimWorldDef def = test_def((const float[3]){1.2f, 1, 0.4f}, &block, (const float[3]){0.5f, 0.6f, 0.4f});
+  SimWorld *world = test_create(&def);
+  SimFrameBuffer *one = sim_frame_buffer_create(), *two = sim_frame_buffer_create();
+  SimError error;
+  test_advance(world, 25);
+  const SimFrame *frame = test_frame(world, SIM_NEED_ALL, one);
+  assert_int_equal(frame->index, 25);
+  assert_true(fabs(frame->time - 25.0 / 60) < 1e-9 && frame->has_container);
+  SimParticleSet set = {.count = frame->count, .position = frame->position, .id = frame->id, .particle_radius = 0.025f};
+  const SimFrame *again = sim_frame_from_particles(&set, SIM_NEED_ALL, 1, two, &error);
+  assert_non_null(again);
+  int32_t *at = malloc(sizeof *at * (size_t)frame->count);
+  for (int32_t i = 0; i < frame->count; i++) at[again->id[i]] = i;
+  for (int32_t i = 0; i < frame->count; i++) {
+    int32_t j = at[frame->id[i]];
+    assert_int_equal(frame->particle_class[i], again->particle_class[j]);
+    assert_int_equal(frame->near_surface[i], again->near_surface[j]);
+    for (int k = 0; k < 3; k++) assert_true(fabsf(frame->smoothed[3 * i + k] - again->smoothed[3 * j + k]) < 1e-6f);
+    for (int k = 0; k < 6; k++) assert_true(fabsf(frame->ellipsoid[6 * i + k] - again->ellipsoid[6 * j + k]) < 1e-5f);
+  }
+  free(at);
+  sim_frame_buffer_destroy(one);
+  sim_frame_buffer_destroy(two);
+  sim_world_destroy(world);
+}
+
+// A frame outlives the step that follows it: the window draws frame n while frame n + 1 is made.
+static void a_frame_stays_while_the_world_moves_on(void **state) {
+  (void)state;
+  SimBlockDef block;
+  SimWorldDef def = test_def((const float[3]){0.8f, 0.8f, 0.4f}, &block, (const float[3]){0.4f, 0.5f, 0.4f});
+  SimWorld *world = test_create(&def);
+  SimFrameBuffer *buffer = sim_frame_buffer_create();
+  const SimFrame *frame = test_frame(world, SIM_NEED_ALL, buffer);
+  uint64_t hash = test_hash(frame);
+  int32_t cells = frame->grid.size[0] * frame->grid.size[1] * frame->grid.size[2];
+  test_advance(world, 5);
+  assert_true(test_hash(frame) == hash);
+  assert_int_equal(frame->grid.cell_start[cells], frame->count);
+  sim_world_destroy(world);
+  assert_true(test_hash(frame) == hash);
+  sim_frame_buffer_destroy(buffer);
+}
+
+static void the_grid_of_a_frame_holds_its_particles(void **state) {
+  (void)state;
+  SimBlockDef block;
+  SimWorldDef def = test_def((const float[3]){0.8f, 0.8f, 0.4f}, &block, (const float[3]){0.4f, 0.5f, 0.4f});
+  SimWorld *world = test_create(&def);
+  SimFrameBuffer *buffer = sim_frame_buffer_create();
+  test_advance(world, 10);
+  const SimFrame *frame = test_frame(world, 0, buffer);
+  const SimGrid *grid = &frame->grid;
+  assert_true(grid->cell_size >= 2 * 2 * frame->particle_radius);
+  for (int z = 0, c = 0; z < grid->size[2]; z++)
+    for (int y = 0; y < grid->size[1]; y++)
+      for (int x = 0; x < grid->size[0]; x++, c++)
+        for (int32_t i = grid->cell_start[c]; i < grid->cell_start[c + 1]; i++) {
+          const int cell[3] = {x, y, z};
+          for (int k = 0; k < 3; k++) {
+            float inside = (frame->position[3 * i + k] - grid->origin[k]) / grid->cell_size - (float)cell[k];
+            assert_true(inside > -1e-4f && inside < 1.0001f);
+          }
+        }
+  sim_frame_buffer_destroy(buffer);
+  sim_world_destroy(world);
+}
+
+static void radius_is_estimated_from_the_spacing(void **state) {
+  (void)state;
+  float *lattice = test_lattice(12, 12, 12, 0.07, 0, 1);
+  assert_true(fabsf(sim_estimate_radius(lattice, 1728) - 0.035f) < 1e-5f);
+  assert_true(sim_estimate_radius(lattice, 1) == 0.01f && sim_estimate_radius(NULL, 0) == 0.01f);
+  for (int k = 0; k < 30; k++) lattice[k] = lattice[k % 3]; // ten in one place do not make it zero
+  assert_true(fabsf(sim_estimate_radius(lattice, 1728) - 0.035f) < 1e-5f);
+  assert_true(sim_estimate_radius(lattice, 10) == 0.01f);
+  free(lattice);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(bad_sets_are_refused),
+      cmocka_unit_test(a_heap_is_refused),
+      cmocka_unit_test(empty_and_single_sets),
+      cmocka_unit_test(attributes_follow_their_particles),
+      cmocka_unit_test(a_set_gives_the_same_surface_as_its_world),
+      cmocka_unit_test(a_frame_stays_while_the_world_moves_on),
+      cmocka_unit_test(the_grid_of_a_frame_holds_its_particles),
+      cmocka_unit_test(radius_is_estimated_from_the_spacing),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
