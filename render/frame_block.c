@@ -97,20 +97,27 @@ static void write_sun(RenderFrameBlock *block, const RenderSettings *settings, c
   block->sun_map[2] = 1 - 1 / settings->refractive_index;
 }
 
+// The floor lies where the scene says, else under the container, else under the particles' spheres.
+static float floor_level(const RenderPicture *picture, const Box *box) {
+  if (!isnan(picture->settings->floor_level)) return picture->settings->floor_level;
+  const float lowest = picture->frame->container.min[1];
+  const bool sensible = picture->frame->has_container && fabsf(lowest) < RENDER_FARTHEST;
+  return sensible ? lowest : box->min[1];
+}
+
 // ---- Everything ------------------------------------------------------------------------------------------------------
 
 static void write_environment(RenderFrameBlock *block, const RenderPicture *picture, const Box *box) {
   const RenderSettings *settings = picture->settings;
   const SimContainer *container = &picture->frame->container;
   const float ratio = (settings->refractive_index - 1) / (settings->refractive_index + 1);
-  const float level = isnan(settings->floor_level) ? box->min[1] : settings->floor_level;
   const float across = glm_vec3_distance((float *)(uintptr_t)box->min, (float *)(uintptr_t)box->max);
   set4(block->absorption, settings->absorption, ratio * ratio);
   set4(block->sky_zenith, settings->sky_zenith, 0);
   set4(block->sky_horizon, settings->sky_horizon, 0);
   set4(block->floor_colour[0], settings->floor_colour[0], 0);
   set4(block->floor_colour[1], settings->floor_colour[1], 0);
-  const float plane[4] = {level, settings->tile_size, 14 * across, 0};
+  const float plane[4] = {floor_level(picture, box), settings->tile_size, 24 * across, 0};
   memcpy(block->floor_plane, plane, sizeof plane);
   const bool visible = settings->container_visible && picture->frame->has_container;
   set4(block->container_min, container->min, visible ? 1 : 0);

@@ -51,7 +51,7 @@ vec3 floor_light(vec3 p, float t) {
   float in_grout = grout.x + grout.y - grout.x * grout.y;
   float flat_out = clamp(1.5 - max(footprint.x, footprint.y) * 2.0, 0.0, 1.0);
   float shade = 1.0 + (hash(floor(at)) - 0.5) * 0.12 * flat_out;
-  vec3 albedo = mix(vec3(0.72, 0.64, 0.52) * shade, vec3(0.34, 0.30, 0.24), in_grout);
+  vec3 albedo = mix(vec3(0.58, 0.53, 0.45) * shade, vec3(0.25, 0.23, 0.20), in_grout);
   SunLight sunlit = sun_light(p);
   vec3 sun = sun_colour.rgb * max(sun_direction.y, 0.0) / PI * sunlit.direct * sunlit.focus;
   vec3 light = albedo * (sun + sky_average(vec3(0.0, 1.0, 0.0)) * sunlit.diffuse);

@@ -47,7 +47,9 @@ void main() {
 
   // What comes through, and what the water scatters of sun and sky on the way.
   vec3 extinction = absorption.rgb + SCATTER;
-  vec3 through = 0.9 * exp(-extinction * metres); // the tenth is lost at the surface, which makes drops stand out
+  // A drop bends what is behind it away at its rim, which therefore looks darker: that is what shows its outline.
+  float rim = clamp(dot(s.xyz, v), 0.0, 1.0);
+  vec3 through = mix(0.55, 0.95, smoothstep(0.0, 0.7, rim)) * exp(-extinction * metres);
   float bead = 0.85 + 0.15 * dot(s.xyz, sun_direction.xyz);
   vec3 source = sun_colour.rgb * sunlit.direct * mix(1.0, sunlit.focus, 0.25) * bead * 0.18 + sky_average(n) * sunlit.diffuse * 0.9;
   vec3 light = behind(n, metres, s.w) * through + SCATTER / extinction * (1.0 - through) * source;
@@ -62,7 +64,8 @@ void main() {
   float fresnel = absorption.a + (1.0 - absorption.a) * pow(1.0 - facing, 5.0);
   vec3 mirrored = sky(reflect(-v, n));
   vec3 half_way = normalize(v + sun_direction.xyz);
-  float glint = mix(8.0, 40.0, colour.a) * pow(clamp(dot(n, half_way), 0.0, 1.0), 300.0);
+  float smooth_or_drop = max(on_top * on_top * on_top, colour.a); // beads in a wall of water are not seen as drops
+  float glint = smooth_or_drop * mix(8.0, 40.0, colour.a) * pow(clamp(dot(n, half_way), 0.0, 1.0), 300.0);
   light = mix(light, mirrored, fresnel) + sun_colour.rgb * sunlit.direct * fresnel * glint;
   result = vec4(light, 1.0);
 }

@@ -12,8 +12,8 @@ vec3 sky_average(vec3 normal) {
   return mix(sky_horizon.rgb, sky_zenith.rgb, 0.25 + 0.25 * normal.y);
 }
 #else
-const vec3 SKY_HORIZON = vec3(0.74, 0.84, 0.92);
-const vec3 SKY_MIDDLE = vec3(0.20, 0.46, 0.84);
+const vec3 SKY_HORIZON = vec3(0.70, 0.82, 0.92);
+const vec3 SKY_MIDDLE = vec3(0.17, 0.42, 0.84);
 const vec3 SKY_ZENITH = vec3(0.05, 0.19, 0.56);
 
 // A wide faint glow and a narrow bright one.
@@ -27,7 +27,7 @@ vec3 sun_glow(vec3 d) {
 vec3 sky(vec3 d) {
   float h = max(d.y, 0.0);
   vec3 blue = mix(SKY_MIDDLE, SKY_ZENITH, h);
-  vec3 colour = mix(blue, SKY_HORIZON, exp(-8.0 * h));
+  vec3 colour = mix(blue, SKY_HORIZON, exp(-14.0 * h));
   return colour + sun_glow(d);
 }
 
