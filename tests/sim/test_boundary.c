@@ -45,8 +45,9 @@ static void check_gradient(const SimBoundary *boundary, const float point[3]) {
     memcpy(a, point, sizeof a);
     memcpy(b, point, sizeof b);
     a[k] -= e, b[k] += e;
-    double quotient = ((double)sim_boundary_solid(boundary, b, ignored) - (double)sim_boundary_solid(boundary, a, ignored)) /
-                      (double)(b[k] - a[k]);
+    double quotient =
+        ((double)sim_boundary_solid(boundary, b, ignored) - (double)sim_boundary_solid(boundary, a, ignored)) /
+        (double)(b[k] - a[k]);
     if (fabs(quotient - (double)gradient[k]) > 0.15)
       fail_msg("gradient %d at (%g, %g, %g): %g, difference quotient %g", k, (double)point[0], (double)point[1],
                (double)point[2], (double)gradient[k], quotient);
@@ -150,9 +151,12 @@ static void a_wedge_holds(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(walls_complete_the_lattice),    cmocka_unit_test(gradients_match_difference_quotients),
-      cmocka_unit_test(distances_are_exact),           cmocka_unit_test(a_sphere_has_its_distance),
-      cmocka_unit_test(clamp_keeps_everything_inside), cmocka_unit_test(thin_obstacles_are_not_jumped),
+      cmocka_unit_test(walls_complete_the_lattice),
+      cmocka_unit_test(gradients_match_difference_quotients),
+      cmocka_unit_test(distances_are_exact),
+      cmocka_unit_test(a_sphere_has_its_distance),
+      cmocka_unit_test(clamp_keeps_everything_inside),
+      cmocka_unit_test(thin_obstacles_are_not_jumped),
       cmocka_unit_test(a_wedge_holds),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

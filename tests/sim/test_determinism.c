@@ -56,7 +56,8 @@ static void any_number_of_threads_gives_the_same_bytes(void **state) {
   uint64_t one = run(1, 12);
   for (int k = 0; k < 4; k++) {
     uint64_t many = run(threads[k], 12);
-    if (many != one) fail_msg("%d threads: %016llx, one: %016llx", threads[k], (unsigned long long)many, (unsigned long long)one);
+    if (many != one)
+      fail_msg("%d threads: %016llx, one: %016llx", threads[k], (unsigned long long)many, (unsigned long long)one);
   }
   assert_true(run(1, 11) != one);
 }

@@ -76,8 +76,15 @@ static void attributes_follow_their_particles(void **state) {
     for (int k = 0; k < 3; k++) velocity[3 * i + k] = (float)(i + k), colour[3 * i + k] = (float)i / COUNT;
   }
   SimContainer container = {{-1, -1, -1}, {3, 3, 3}};
-  SimParticleSet set = {.count = COUNT, .position = position, .velocity = velocity, .colour = colour, .radius = radius,
-                        .particle_class = class, .id = id, .particle_radius = 0.05f, .container = &container};
+  SimParticleSet set = {.count = COUNT,
+                        .position = position,
+                        .velocity = velocity,
+                        .colour = colour,
+                        .radius = radius,
+                        .particle_class = class,
+                        .id = id,
+                        .particle_radius = 0.05f,
+                        .container = &container};
   SimFrameBuffer *buffer = sim_frame_buffer_create();
   SimError error;
   const SimFrame *frame = sim_frame_from_particles(&set, SIM_NEED_ALL, 2, buffer, &error);

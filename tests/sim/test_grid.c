@@ -197,10 +197,14 @@ static void a_heap_is_refused(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(random_sets_match_all_pairs),      cmocka_unit_test(no_particle_and_one_particle),
-      cmocka_unit_test(all_particles_in_one_place),       cmocka_unit_test(lattice_on_cell_borders),
-      cmocka_unit_test(outliers_far_away),                cmocka_unit_test(a_line),
-      cmocka_unit_test(order_is_the_same_for_any_threads), cmocka_unit_test(wide_ranges_hold_every_neighbour),
+      cmocka_unit_test(random_sets_match_all_pairs),
+      cmocka_unit_test(no_particle_and_one_particle),
+      cmocka_unit_test(all_particles_in_one_place),
+      cmocka_unit_test(lattice_on_cell_borders),
+      cmocka_unit_test(outliers_far_away),
+      cmocka_unit_test(a_line),
+      cmocka_unit_test(order_is_the_same_for_any_threads),
+      cmocka_unit_test(wide_ranges_hold_every_neighbour),
       cmocka_unit_test(a_heap_is_refused),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -117,8 +117,10 @@ static void dry_places(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(heights_match_the_formula), cmocka_unit_test(a_level_pool_is_level),
-      cmocka_unit_test(normals_follow_the_slope),  cmocka_unit_test(dry_places),
+      cmocka_unit_test(heights_match_the_formula),
+      cmocka_unit_test(a_level_pool_is_level),
+      cmocka_unit_test(normals_follow_the_slope),
+      cmocka_unit_test(dry_places),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -84,9 +84,12 @@ static void calibration(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(integrals_are_one),    cmocka_unit_test(derivatives_match_difference_quotients),
-      cmocka_unit_test(kernels_vanish_outside), cmocka_unit_test(lattice_sums),
-      cmocka_unit_test(single_precision_spline_is_the_spline), cmocka_unit_test(calibration),
+      cmocka_unit_test(integrals_are_one),
+      cmocka_unit_test(derivatives_match_difference_quotients),
+      cmocka_unit_test(kernels_vanish_outside),
+      cmocka_unit_test(lattice_sums),
+      cmocka_unit_test(single_precision_spline_is_the_spline),
+      cmocka_unit_test(calibration),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -144,11 +144,10 @@ static double distance_to(const SimObstacle *o, const float p[3]) {
 // water back.
 static void obstacles_keep_water_out(void **state) {
   (void)state;
-  const SimObstacle obstacles[4] = {
-      {SIM_SPHERE, {0.3f, 0, 0}, {0.55f, 0.15f, 0.25f}, {0, 0, 0, 1}, {0, 0, 0}},
-      {SIM_BOX, {0.15f, 0.1f, 0.2f}, {0.8f, 0.05f, 0.1f}, {0, 0, 0, 1}, {0, 0, 0}},
-      {SIM_CYLINDER, {0.16f, 0.5f, 0}, {0.2f, 0.25f, 0.25f}, {0, 0, 0, 1}, {0, 0, 0}},
-      {SIM_BOX, {0.004f, 2, 2}, {1.2f, 0.5f, 0.25f}, {0, 0, 0, 1}, {0, 0, 0}}};
+  const SimObstacle obstacles[4] = {{SIM_SPHERE, {0.3f, 0, 0}, {0.55f, 0.15f, 0.25f}, {0, 0, 0, 1}, {0, 0, 0}},
+                                    {SIM_BOX, {0.15f, 0.1f, 0.2f}, {0.8f, 0.05f, 0.1f}, {0, 0, 0, 1}, {0, 0, 0}},
+                                    {SIM_CYLINDER, {0.16f, 0.5f, 0}, {0.2f, 0.25f, 0.25f}, {0, 0, 0, 1}, {0, 0, 0}},
+                                    {SIM_BOX, {0.004f, 2, 2}, {1.2f, 0.5f, 0.25f}, {0, 0, 0, 1}, {0, 0, 0}}};
   SimWorldDef def = test_def((const float[3]){1.5f, 0.9f, 0.5f}, &block, (const float[3]){0.45f, 0.7f, 0.5f});
   def.obstacle_count = 4;
   def.obstacles = obstacles;

@@ -34,9 +34,9 @@ static void eigensolver_matches_jacobi(void **state) {
     float m[6];
     double size = pow(10, 12 * test_random(&seed) - 8);
     for (int k = 0; k < 6; k++) m[k] = (float)(size * (2 * test_random(&seed) - 1));
-    if (n % 4 == 1) m[3] = m[4] = m[5] = 0;          // diagonal
+    if (n % 4 == 1) m[3] = m[4] = m[5] = 0;                 // diagonal
     if (n % 4 == 2) m[1] = m[0], m[3] = 0, m[4] = m[5] = 0; // two equal
-    if (n % 4 == 3)                                   // rank one: two zero
+    if (n % 4 == 3)                                         // rank one: two zero
       m[3] = m[0] * m[1] / (float)size, m[4] = m[0] * m[2] / (float)size, m[5] = m[1] * m[2] / (float)size,
       m[0] *= m[0] / (float)size, m[1] *= m[1] / (float)size, m[2] *= m[2] / (float)size;
     check_eigen(m);
@@ -45,8 +45,9 @@ static void eigensolver_matches_jacobi(void **state) {
 
 static void eigensolver_on_degenerate_matrices(void **state) {
   (void)state;
-  const float cases[8][6] = {{0, 0, 0, 0, 0, 0}, {1, 1, 1, 0, 0, 0},     {1, 1, 1, 1e-7f, 0, 0},       {1, 2, 2, 0, 0, 0},
-                             {2, 2, 1, 0, 0, 0}, {1e-20f, 0, 0, 0, 0, 0}, {1e20f, 1e20f, 1, 0, 0, 1e19f}, {1, 1, 1, 1, 1, 1}};
+  const float cases[8][6] = {
+      {0, 0, 0, 0, 0, 0}, {1, 1, 1, 0, 0, 0},      {1, 1, 1, 1e-7f, 0, 0},         {1, 2, 2, 0, 0, 0},
+      {2, 2, 1, 0, 0, 0}, {1e-20f, 0, 0, 0, 0, 0}, {1e20f, 1e20f, 1, 0, 0, 1e19f}, {1, 1, 1, 1, 1, 1}};
   for (int c = 0; c < 8; c++) check_eigen(cases[c]);
   float value[3], v[3][3];
   sim_eigen_symmetric((const float[6]){NAN, 1, 1, 0, 0, 0}, value, v);
@@ -78,7 +79,8 @@ static void anisotropy_and_density_match_the_twins(void **state) {
     int32_t id = (int32_t)frame->id[i];
     double density = 1000 * reference_density(all, COUNT, id, 0.1), centre[3], expected[6];
     assert_true(fabs((double)frame->density[i] - density) < 0.01);
-    if (fabs(density - 550) > 0.1) assert_int_equal(frame->particle_class[i], density < 550 ? SIM_SPLASH : SIM_AGGREGATED);
+    if (fabs(density - 550) > 0.1)
+      assert_int_equal(frame->particle_class[i], density < 550 ? SIM_SPLASH : SIM_AGGREGATED);
     int neighbours = reference_anisotropy(all, COUNT, id, 0.1, centre, expected);
     bool sphere = frame->particle_class[i] == SIM_SPLASH || neighbours < 25;
     ellipsoids += !sphere;
@@ -154,8 +156,10 @@ static void all_in_one_place_is_finite(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(eigensolver_matches_jacobi), cmocka_unit_test(eigensolver_on_degenerate_matrices),
-      cmocka_unit_test(anisotropy_and_density_match_the_twins), cmocka_unit_test(known_shapes),
+      cmocka_unit_test(eigensolver_matches_jacobi),
+      cmocka_unit_test(eigensolver_on_degenerate_matrices),
+      cmocka_unit_test(anisotropy_and_density_match_the_twins),
+      cmocka_unit_test(known_shapes),
       cmocka_unit_test(all_in_one_place_is_finite),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

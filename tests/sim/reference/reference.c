@@ -71,8 +71,8 @@ int reference_anisotropy(const float *position, int32_t count, int32_t i, double
     double q = distance(position + 3 * i, position + 3 * j) / radius;
     for (int a = 0; a < 3 && q < 1; a++)
       for (int b = 0; b < 3; b++)
-        c[a][b] += (1 - q * q * q) * ((double)position[3 * j + a] - mean[a]) * ((double)position[3 * j + b] - mean[b]) /
-                   total;
+        c[a][b] +=
+            (1 - q * q * q) * ((double)position[3 * j + a] - mean[a]) * ((double)position[3 * j + b] - mean[b]) / total;
   }
   float m[6] = {(float)c[0][0], (float)c[1][1], (float)c[2][2], (float)c[0][1], (float)c[0][2], (float)c[1][2]};
   double value[3], v[3][3], volume = 1, largest;
