@@ -19,4 +19,4 @@ jobs=$(nproc 2>/dev/null || echo 2)
 cmake --preset "$preset" >/dev/null
 cmake --build "build-$preset" -j "$jobs" >"build-$preset/build.log" 2>&1 || { cat "build-$preset/build.log" >&2; exit 1; }
 # shellcheck disable=SC2086
-exec ctest --test-dir "build-$preset" --output-on-failure $labels "$@"
+exec ctest --preset "$preset" $labels "$@"

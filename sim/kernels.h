@@ -33,7 +33,7 @@ typedef struct SimCubic {
   float value_scale;    ///< V · 8/(πh³): V W(0)
   float gradient_scale; ///< 1/m, V · 8/(πh⁴)
   float omega;          ///< damping of a Jacobi iteration on densities with this kernel
-  float lattice_gradient; ///< 1/m², Σ |V ∇W|² over the neighbours in the lattice: the S of REFERENCE's scale-free ε and k
+  float lattice_gradient; ///< 1/m², Σ |V ∇W|² over the neighbours in the lattice: makes ε and k of the solver free of scale
 } SimCubic;
 
 SimCubic sim_cubic_make(float spacing, float support);

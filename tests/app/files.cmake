@@ -33,3 +33,11 @@ if(NOT LIDO_SYSTEM_PYTHON)
 endif()
 add_test(NAME app_meshio COMMAND ${LIDO_SYSTEM_PYTHON} ${CMAKE_CURRENT_SOURCE_DIR}/test_meshio.py $<TARGET_FILE:lido>)
 set_tests_properties(app_meshio PROPERTIES SKIP_RETURN_CODE 77)
+
+# The shipped scenes, coarser in the ordinary run.
+add_test(NAME app_shipped_scenes COMMAND ${LIDO_SYSTEM_PYTHON} ${CMAKE_CURRENT_SOURCE_DIR}/test_shipped_scenes.py
+         $<TARGET_FILE:lido> ${PROJECT_SOURCE_DIR})
+set_tests_properties(app_shipped_scenes PROPERTIES TIMEOUT 600)
+add_test(NAME app_shipped_scenes_long COMMAND ${LIDO_SYSTEM_PYTHON} ${CMAKE_CURRENT_SOURCE_DIR}/test_shipped_scenes.py
+         $<TARGET_FILE:lido> ${PROJECT_SOURCE_DIR} long)
+set_tests_properties(app_shipped_scenes_long PROPERTIES LABELS long TIMEOUT 1800)

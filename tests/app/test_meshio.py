@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Particle files in an independent reader: meshio must find the positions and fields that we wrote.
 
-What meshio reads is compared with the bytes of the VTK file at the places where REFERENCE's layout puts them, taken
+What meshio reads is compared with the bytes of the VTK file at the places where the format puts them, taken
 out here with numpy, and the PLY file with the VTK file. Exit code 77: meshio is not installed.
 Usage: test_meshio.py LIDO
 """
