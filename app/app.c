@@ -1,6 +1,7 @@
 #include "app/app.h"
 
 #include <signal.h>
+#include <stdatomic.h>
 #include <stdio.h>
 
 bool app_fail(AppError *error, AppCode code, const char *format, ...) {
@@ -14,17 +15,19 @@ bool app_fail(AppError *error, AppCode code, const char *format, ...) {
   return false;
 }
 
-static volatile sig_atomic_t interrupted;
-static void (*last_act)(void); // set before signals matter, see app_before_abrupt_end
+// Any thread may be the one that a signal interrupts, so these are atomics (lock-free, as a handler needs) and not
+// merely volatile.
+static atomic_int interrupted;
+static void (*_Atomic last_act)(void); // see app_before_abrupt_end
 
 static void on_interrupt(int signal_number) {
   // A second Ctrl-C ends the program at once, in case a frame hangs.
-  if (interrupted) {
-    if (last_act) last_act();
+  if (atomic_exchange(&interrupted, 1)) {
+    void (*act)(void) = last_act;
+    if (act) act();
     signal(signal_number, SIG_DFL);
     raise(signal_number);
   }
-  interrupted = 1;
 }
 
 bool app_interrupted(void) {

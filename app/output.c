@@ -6,6 +6,7 @@
 #include <fcntl.h>
 #include <limits.h>
 #include <signal.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -30,7 +31,7 @@ struct OutputFile {
 // `in_use` is set, and `in_use` is cleared before the name changes.
 enum { MAX_LEFTOVERS = 16 };
 static char leftovers[MAX_LEFTOVERS][PATH_MAX];
-static volatile sig_atomic_t in_use[MAX_LEFTOVERS];
+static atomic_int in_use[MAX_LEFTOVERS];
 static volatile pid_t writers[MAX_LEFTOVERS]; // processes that write in our place, 0 for our own writing
 
 static int leftover_add(const char *part) {

@@ -6,6 +6,18 @@
 #include <stddef.h>
 #include <stdint.h>
 
+/// ThreadSanitizer keeps its own memory in files: a limit on files' sizes ends it, whatever the program does.
+#if defined(__SANITIZE_THREAD__)
+#define LIDO_NO_FILE_SIZE_LIMIT 1
+#elif defined(__has_feature)
+#if __has_feature(thread_sanitizer)
+#define LIDO_NO_FILE_SIZE_LIMIT 1
+#endif
+#endif
+#ifndef LIDO_NO_FILE_SIZE_LIMIT
+#define LIDO_NO_FILE_SIZE_LIMIT 0
+#endif
+
 /// How a run differs from an ordinary one; zero means it does not.
 typedef struct LidoRun {
   // Set before the run

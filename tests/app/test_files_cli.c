@@ -209,6 +209,7 @@ static void test_full_device(void **state) {
 
 static void test_file_size_limit(void **state) {
   (void)state;
+  if (LIDO_NO_FILE_SIZE_LIMIT) skip();
   LidoRun run = {.file_size_limit = 5000};
   simulate_to(&run, in(folder, "out/p_%05d.vtk"));
   check_said(&run, 1, "p_00000.vtk: cannot be written: File too large");
