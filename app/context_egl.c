@@ -20,9 +20,9 @@ typedef struct EglContext {
 // Make a 4.5 core context current on `display`. On failure the display is terminated and `why` names the step.
 static bool make_current(EglContext *egl, EGLDisplay display, char *why, size_t size) {
   static const EGLint config_wanted[] = {EGL_SURFACE_TYPE, 0, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_NONE};
-  static const EGLint context_wanted[] = {EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 5,
-                                          EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-                                          EGL_NONE};
+  static const EGLint context_wanted[] = {
+      EGL_CONTEXT_MAJOR_VERSION,           4,       EGL_CONTEXT_MINOR_VERSION, 5, EGL_CONTEXT_OPENGL_PROFILE_MASK,
+      EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
   if (display == EGL_NO_DISPLAY || !eglInitialize(display, NULL, NULL)) {
     snprintf(why, size, "eglInitialize failed");
     return false;
@@ -93,8 +93,8 @@ static bool find_display(EglContext *egl, char *why, size_t size) {
   const char *extensions = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
   if (extensions == NULL || !client_has(extensions, "EGL_EXT_platform_base")) return false;
   const bool has_devices =
-      client_has(extensions, "EGL_EXT_platform_device") && (client_has(extensions, "EGL_EXT_device_enumeration") ||
-                                                            client_has(extensions, "EGL_EXT_device_base"));
+      client_has(extensions, "EGL_EXT_platform_device") &&
+      (client_has(extensions, "EGL_EXT_device_enumeration") || client_has(extensions, "EGL_EXT_device_base"));
   EglContext software = {EGL_NO_DISPLAY, EGL_NO_CONTEXT};
   if (client_has(extensions, "EGL_MESA_platform_surfaceless")) {
     const EGLDisplay display = eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, NULL);

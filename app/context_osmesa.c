@@ -59,8 +59,15 @@ static void release(OsmesaContext *osmesa) {
 }
 
 static bool make_current(OsmesaContext *osmesa, char *why, size_t size) {
-  static const int wanted[] = {OSMESA_FORMAT, OSMESA_RGBA, OSMESA_PROFILE, OSMESA_CORE_PROFILE,
-                               OSMESA_CONTEXT_MAJOR_VERSION, 4, OSMESA_CONTEXT_MINOR_VERSION, 5, 0};
+  static const int wanted[] = {OSMESA_FORMAT,
+                               OSMESA_RGBA,
+                               OSMESA_PROFILE,
+                               OSMESA_CORE_PROFILE,
+                               OSMESA_CONTEXT_MAJOR_VERSION,
+                               4,
+                               OSMESA_CONTEXT_MINOR_VERSION,
+                               5,
+                               0};
   osmesa->context = OSMesaCreateContextAttribs(wanted, NULL);
   if (osmesa->context == NULL) {
     snprintf(why, size, "OpenGL 4.5 core is not offered");

@@ -100,5 +100,6 @@ void interact_lean(const float gravity[3], const RenderView *view, float right, 
   memcpy(leaned, gravity, 3 * sizeof *leaned);
   if (!(angle > 0) || !(strength > 0)) return;
   double side = strength * sin(angle) / angle;
-  for (int k = 0; k < 3; k++) leaned[k] = (float)(cos(angle) * gravity[k] + side * (right * axes[0][k] + away * level[k]));
+  for (int k = 0; k < 3; k++)
+    leaned[k] = (float)(cos(angle) * gravity[k] + side * (right * axes[0][k] + away * level[k]));
 }

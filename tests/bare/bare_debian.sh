@@ -5,6 +5,7 @@ set -eu
 source=$1
 [ "$(id -u)" -eq 0 ] && command -v debootstrap >/dev/null 2>&1 && command -v git >/dev/null 2>&1 || exit 77
 root=$(mktemp -d)
+chmod 755 "$root" # apt fetches as a user of its own
 finish() {
   for mount in tmp dev/pts dev proc; do umount -l "$root/$mount" 2>/dev/null || :; done
   rm -rf --one-file-system "$root"
