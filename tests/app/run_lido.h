@@ -37,6 +37,9 @@ typedef struct LidoRun {
   int lines;        ///< of it
 } LidoRun;
 
+/// Whether this machine has pseudo-terminals (/dev/pts); a bare chroot may not.
+bool lido_has_terminals(void);
+
 /// Run `lido` with the arguments, the last one NULL.
 void lido_run(LidoRun *run, const char *const *arguments);
 #define LIDO(run, ...) lido_run(run, (const char *const[]){__VA_ARGS__, NULL})

@@ -168,8 +168,10 @@ static void test_unwritable(void **state) {
   file_put_text(in(folder, "file"), "x");
   simulate_to(&run, in(folder, "file/p_%05d.vtk")); // a file where the folder shall be
   check_said(&run, 1, "file: cannot make this folder: a file of that name is there");
-  simulate_to(&run, "/sys/lido/p_%05d.vtk"); // not even root can
-  check_said(&run, 1, "/sys/lido: cannot make this folder: ");
+  if (access("/proc/self", F_OK) == 0) { // not even root can write there
+    simulate_to(&run, "/proc/lido/p_%05d.vtk");
+    check_said(&run, 1, "/proc/lido: cannot make this folder: ");
+  }
   mkdir(in(folder, "out/p_00000.ply"), 0777); // a folder where the file shall be
   simulate_to(&run, in(folder, "out/p_%05d.ply"));
   check_said(&run, 1, "p_00000.ply: cannot be written: Is a directory");

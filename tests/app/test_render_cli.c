@@ -371,6 +371,7 @@ static void test_reader_goes_away(void **state) {
   run = (LidoRun){.stdout_to = "/dev/full"};
   LIDO(&run, "render", scene, "--frames", "2", SIZE, "-q", "-o", "-");
   check_said(&run, 1, "standard output: cannot be written: No space left on device");
+  if (!lido_has_terminals()) return;
   run = (LidoRun){.stdout_to = "/dev/ptmx"};
   LIDO(&run, "render", scene, "--frames", "2", SIZE, "-q", "-o", "-");
   check_said(&run, 2, "raw pictures are not for a terminal");

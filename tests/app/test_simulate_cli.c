@@ -247,6 +247,7 @@ static void test_words(void **state) {
 
 static void test_terminal(void **state) {
   (void)state;
+  if (!lido_has_terminals()) skip();
   LidoRun run = {.terminal = true};
   LIDO(&run, "simulate", scene, "--frames", "3", "-o", in(folder, "p_%05d.vtk"));
   check_done(&run);
