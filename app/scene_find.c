@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/auxv.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -20,10 +21,12 @@ static bool is_folder(const char *path) {
   return stat(path, &status) == 0 && S_ISDIR(status.st_mode);
 }
 
-/// The folder that the program's file lies in.
+/// The folder that the program's file lies in. A bare chroot may lack /proc: then by the path that started it.
 static bool program_folder(char *path, size_t size) {
   ssize_t length = readlink("/proc/self/exe", path, size - 1);
-  if (length <= 0) return false;
+  const char *started = length <= 0 ? (const char *)getauxval(AT_EXECFN) : NULL;
+  if (started) length = snprintf(path, size, "%s", started);
+  if (length <= 0 || (size_t)length >= size) return false;
   path[length] = 0;
   char *slash = strrchr(path, '/');
   if (!slash) return false;
