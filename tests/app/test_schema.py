@@ -10,6 +10,7 @@ import json
 import pathlib
 import subprocess
 import sys
+import tempfile
 
 try:
     import jsonschema
@@ -74,7 +75,10 @@ def changed(path, value):
 
 def check(scene):
     """What lido check says to a scene."""
-    return subprocess.run([LIDO, "check", "/dev/stdin"], input=json.dumps(scene).encode(), capture_output=True, timeout=60)
+    with tempfile.NamedTemporaryFile("w", suffix=".json") as file:
+        json.dump(scene, file)
+        file.flush()
+        return subprocess.run([LIDO, "check", file.name], capture_output=True, timeout=60)
 
 
 def main():
