@@ -17,10 +17,10 @@ debootstrap --variant=minbase bookworm "$root" >"$root.log" 2>&1 || { echo "no D
 rm -f "$root.log"
 mount -t proc proc "$root/proc" && mount --bind /dev "$root/dev" && mount -t tmpfs tmpfs "$root/tmp" || exit 77
 cp /etc/resolv.conf "$root/etc/resolv.conf"
-git clone -q "$source" "$root/root/lido"
+git clone -q "$source" "$root/srv/lido"
 
 inside() {
-  env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LANG=C.UTF-8 chroot "$root" sh -c "cd /root/lido && $1"
+  env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/srv LANG=C.UTF-8 chroot "$root" sh -c "cd /srv/lido && $1"
 }
 fail() {
   echo "bare Debian: $1"
@@ -28,13 +28,13 @@ fail() {
 }
 
 inside 'scripts/run.sh' || fail 'scripts/run.sh failed'
-[ "$(ls "$root/root/lido/out" | grep -c '^frame_[0-9]*\.png$')" -eq 120 ] || fail 'scripts/run.sh left no 120 pictures'
-[ -s "$root/root/lido/out/film.mp4" ] || fail 'scripts/run.sh left no film'
+[ "$(ls "$root/srv/lido/out" | grep -c '^frame_[0-9]*\.png$')" -eq 120 ] || fail 'scripts/run.sh left no 120 pictures'
+[ -s "$root/srv/lido/out/film.mp4" ] || fail 'scripts/run.sh left no film'
 
 # A second run installs and builds nothing.
-touch "$root/root/marker"
+touch "$root/srv/marker"
 inside 'scripts/run.sh list' >/dev/null || fail 'the second run failed'
-[ -z "$(find "$root/root/lido/build" -newer "$root/root/marker" \( -name '*.o' -o -name '*.a' -o -name lido \) -print)" ] ||
+[ -z "$(find "$root/srv/lido/build" -newer "$root/srv/marker" \( -name '*.o' -o -name '*.a' -o -name lido \) -print)" ] ||
   fail 'the second run built something'
 
 inside 'scripts/test.sh' || fail 'scripts/test.sh failed'
