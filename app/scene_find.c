@@ -36,7 +36,7 @@ static bool program_folder(char *path, size_t size) {
 
 /// Installed, beside the program, or in the sources that its build folder lies in; last, where we are.
 static bool folder_candidate(int index, char *path, size_t size) {
-  static const char *const places[] = {"../share/lido/configs", "configs", "../configs", "../../configs"};
+  static const char *const places[] = {LIDO_DATA_FOLDER "/configs", "configs", "../configs", "../../configs"};
   enum { PLACES = sizeof places / sizeof *places };
   if (index == PLACES) return snprintf(path, size, "configs") > 0;
   char program[2048];
