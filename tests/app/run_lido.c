@@ -201,3 +201,12 @@ void lido_run(LidoRun *run, const char *const *arguments) {
   fclose(err);
   fclose(out);
 }
+
+void check_done(const LidoRun *run) {
+  if (run->code != 0) fail_msg("exit code %d:\n%s", run->code, run->text);
+}
+
+void check_said(const LidoRun *run, int code, const char *cause) {
+  if (run->code != code || run->lines != 1 || strncmp(run->text, "lido: ", 6) != 0 || !strstr(run->text, cause))
+    fail_msg("expected exit code %d and '%s', got %d and\n%s", code, cause, run->code, run->text);
+}

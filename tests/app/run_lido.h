@@ -44,6 +44,10 @@ bool lido_has_terminals(void);
 void lido_run(LidoRun *run, const char *const *arguments);
 #define LIDO(run, ...) lido_run(run, (const char *const[]){__VA_ARGS__, NULL})
 
+/// Fail the test unless the run ended well; unless it ended with `code` and one line from us that names the cause.
+void check_done(const LidoRun *run);
+void check_said(const LidoRun *run, int code, const char *cause);
+
 /// A fresh empty folder; at the end remove it with everything in it.
 void folder_make(char folder[256]);
 void folder_remove(const char *folder);

@@ -37,12 +37,6 @@ static int tear_down(void **state) {
   return 0;
 }
 
-// One line, from us, with the cause in it.
-static void check_said(const LidoRun *run, int code, const char *cause) {
-  if (run->code != code || run->lines != 1 || strncmp(run->text, "lido: ", 6) != 0 || !strstr(run->text, cause))
-    fail_msg("expected exit code %d and '%s', got %d and\n%s", code, cause, run->code, run->text);
-}
-
 static void check_nothing_written(void) {
   assert_int_equal(folder_count(in(folder, "out")), 0);
 }

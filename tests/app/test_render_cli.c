@@ -37,15 +37,6 @@ static int tear_down(void **state) {
   return 0;
 }
 
-static void check_done(const LidoRun *run) {
-  if (run->code != 0) fail_msg("exit code %d:\n%s", run->code, run->text);
-}
-
-static void check_said(const LidoRun *run, int code, const char *cause) {
-  if (run->code != code || run->lines != 1 || strncmp(run->text, "lido: ", 6) != 0 || !strstr(run->text, cause))
-    fail_msg("expected exit code %d and '%s', got %d and\n%s", code, cause, run->code, run->text);
-}
-
 static void read_png(const char *name, Image *image) {
   AppError error;
   if (!image_read_png(in(folder, name), image, &error)) fail_msg("%s", error.message);

@@ -34,10 +34,6 @@ static int tear_down(void **state) {
   return 0;
 }
 
-static void check_done(const LidoRun *run) {
-  if (run->code != 0) fail_msg("exit code %d:\n%s", run->code, run->text);
-}
-
 static void read_frame(const char *pattern, int number, ParticleFile *file) {
   char name[64];
   snprintf(name, sizeof name, pattern, number);
