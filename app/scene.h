@@ -64,7 +64,7 @@ typedef struct Scene {
 
   // Made from the above when the scene is loaded, for scene_world_def.
   SimBlockDef *blocks;  // (fluid_count)
-  SimObstacle *solids;  // (obstacles_count)
+  SimObstacleDef *solids; // (obstacles_count)
 } Scene;
 
 // ---- Loading --------------------------------------------------------------------------------------------------------

@@ -242,7 +242,8 @@ static SimBlockDef make_block(const SceneBlock *block) {
   return def;
 }
 
-static SimObstacle make_solid(const SceneObstacle *obstacle) {
+static SimObstacleDef make_solid(const SceneObstacle *obstacle) {
+  SimObstacleDef def = sim_default_obstacle_def();
   SimObstacle solid = {.shape = (SimShape)obstacle->type};
   switch (solid.shape) {
   case SIM_BOX:
@@ -255,11 +256,14 @@ static SimObstacle make_solid(const SceneObstacle *obstacle) {
     solid.size[0] = solid.size[2] = 2 * obstacle->cylinder.radius;
     solid.size[1] = obstacle->cylinder.height;
     break;
+  default:
+    break;
   }
   memcpy(solid.position, obstacle->position, sizeof solid.position);
   memcpy(solid.colour, obstacle->colour, sizeof solid.colour);
   quaternion_from_degrees(obstacle->rotation, solid.rotation);
-  return solid;
+  def.body = solid;
+  return def;
 }
 
 static bool make_defs(const Check *check) {

@@ -27,7 +27,8 @@ static bool near_body(const SimBody *body, const float point[3], float reach) {
   return d2 < r * r;
 }
 
-float sim_boundary_solid(const SimBoundary *boundary, const float point[3], float gradient[3]) {
+void sim_boundary_solid(const SimBoundary *boundary, const float point[3], SimSolid *solid) {
+  *solid = (SimSolid){.body = -1};
   float space = 1, slope[3] = {0, 0, 0}; // what is free, and its gradient
   if (near_container(boundary, point)) {
     float a[3], da[3];
@@ -44,8 +45,24 @@ float sim_boundary_solid(const SimBoundary *boundary, const float point[3], floa
     for (int k = 0; k < 3; k++) slope[k] = slope[k] * rest - space * g[k];
     space *= rest;
   }
-  for (int k = 0; k < 3; k++) gradient[k] = -slope[k];
-  return 1 - space;
+  for (int k = 0; k < 3; k++) solid->gradient[k] = -slope[k];
+  solid->share = 1 - space;
+}
+
+bool sim_boundary_near_box(const SimBoundary *boundary, const float low[3], const float high[3], float margin) {
+  float reach = boundary->wall.reach + margin;
+  for (int k = 0; k < 3; k++)
+    if (low[k] < boundary->container.min[k] + reach || high[k] > boundary->container.max[k] - reach) return true;
+  for (int32_t b = 0; b < boundary->body_count; b++) {
+    const SimBody *body = &boundary->bodies[b];
+    float d2 = 0, r = body->bound + reach;
+    for (int k = 0; k < 3; k++) {
+      float outside = fmaxf(0, fmaxf(low[k] - body->position[k], body->position[k] - high[k]));
+      d2 += outside * outside;
+    }
+    if (d2 < r * r) return true;
+  }
+  return false;
 }
 
 // ---- Clamp -----------------------------------------------------------------------------------------------------------

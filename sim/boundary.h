@@ -13,14 +13,27 @@
 
 typedef struct SimBoundary {
   SimContainer container;
+  float friction;       ///< of the container, [0, 1]
   float clearance;      ///< m, half a spacing: particles touch the walls
   int32_t body_count;
   const SimBody *bodies;
   SimWall wall;
 } SimBoundary;
 
-/// The share of the density sum that walls and obstacles give at a point, in [0, 1], and its gradient (1/m).
-float sim_boundary_solid(const SimBoundary *boundary, const float point[3], float gradient[3]);
+/// What walls and obstacles are to a particle at one point.
+typedef struct SimSolid {
+  float share;            ///< of the density sum, [0, 1]
+  float gradient[3];      ///< 1/m, of the share
+  float velocity[3];      ///< m/s, of the walls there, weighted by their shares; 0 where there are none
+  float friction;         ///< of the walls there, weighted likewise
+  int32_t body;           ///< the floating body with the largest share there, −1: none in reach
+  float body_gradient[3]; ///< 1/m, what that body adds to the gradient
+} SimSolid;
+
+void sim_boundary_solid(const SimBoundary *boundary, const float point[3], SimSolid *solid);
+
+/// Whether any wall or body may be in reach (of the density sum or of a move of `margin`) of a point of the box.
+bool sim_boundary_near_box(const SimBoundary *boundary, const float low[3], const float high[3], float margin);
 
 /// Correct a move from a valid place `from` to `to`: stop at obstacles, then keep clear of all walls.
 void sim_boundary_clamp(const SimBoundary *boundary, const float from[3], float to[3]);

@@ -46,20 +46,45 @@ typedef struct SimHeightField {
   const float *normal;         ///< unit, (size[1], size[0], 3); (0, 1, 0) where there is no water
 } SimHeightField;
 
-typedef enum SimShape { SIM_BOX = 0, SIM_SPHERE = 1, SIM_CYLINDER = 2 } SimShape;
+typedef enum SimShape {
+  SIM_BOX = 0,
+  SIM_SPHERE = 1,
+  SIM_CYLINDER = 2,            ///< along y
+  SIM_CAPSULE = 3,             ///< along y, with half balls at both ends
+  SIM_STAIRS = 4,              ///< a solid flight that climbs towards +x in equal steps
+  SIM_MESH = 5                 ///< a closed triangle mesh
+} SimShape;
+#define SIM_SHAPE_COUNT 6
+
+/// A closed triangle mesh in a body's own axes, around its centre. Normals by the right-hand rule point outwards.
+typedef struct SimMesh {
+  int32_t vertex_count, triangle_count;
+  const float *vertex;         ///< m, (vertex_count, 3)
+  const int32_t *triangle;     ///< (triangle_count, 3), indices of vertices
+} SimMesh;
 
 /// A solid body in the water. Its own axes are turned by `rotation`, then moved by `position`.
 typedef struct SimObstacle {
   SimShape shape;
-  float size[3];               ///< m: box, full edge lengths; sphere, (diameter, –, –); cylinder, (diameter, height along y, –)
-  float position[3];           ///< m, the centre
+  float size[3];               ///< m: box, stairs: full edge lengths; sphere: (diameter, –, –); cylinder, capsule: (diameter,
+                               ///< full height along y, –); mesh: unused, its vertices are as large as they are
+  float position[3];           ///< m, the centre (of a mesh: the origin of its vertices)
   float rotation[4];           ///< unit quaternion x, y, z, w
   float colour[3];             ///< linear light, [0, 1]
+  int32_t steps;               ///< stairs: number of steps, [1, 1000]; step k (from 0) reaches up to (k + 1)/steps of the
+                               ///< height and begins at k/steps of the length
+  const SimMesh *mesh;         ///< mesh: its triangles; else NULL
 } SimObstacle;
 
-/// What holds the water: an axis-aligned box, open at the top for the eye but closed for particles.
+typedef enum SimContainerShape {
+  SIM_CONTAINER_BOX = 0,
+  SIM_CONTAINER_GLASS = 1      ///< an upright cylinder around the middle of the box, as wide as its shorter horizontal side
+} SimContainerShape;
+
+/// What holds the water: axis-aligned, open at the top for the eye but closed for particles.
 typedef struct SimContainer {
-  float min[3], max[3];        ///< m, the inner walls
+  float min[3], max[3];        ///< m, the inner walls, or the box around them
+  SimContainerShape shape;
 } SimContainer;
 
 typedef struct SimFrame {

@@ -87,6 +87,8 @@ float sim_body_distance(const SimBody *body, const float point[3], float normal[
   case SIM_CYLINDER:
     distance = cylinder_distance(body, p, n);
     break;
+  default:
+    break;
   }
   to_world(body, n, normal);
   return distance;
@@ -138,6 +140,8 @@ float sim_body_solid(const SimBody *body, const SimWall *wall, const float point
     break;
   case SIM_CYLINDER:
     share = cylinder_solid(body, wall, p, g);
+    break;
+  default:
     break;
   }
   to_world(body, g, gradient);

@@ -2,6 +2,8 @@
 #ifndef LIDO_SIM_OBSTACLES_H
 #define LIDO_SIM_OBSTACLES_H
 
+#include <stdbool.h>
+
 #include "sim/frame.h"
 #include "sim/wall.h"
 
@@ -12,6 +14,11 @@ typedef struct SimBody {
   float position[3];
   float rotation[9];  ///< row-major, from the body's axes to the world's
   float bound;        ///< m, radius of a ball around the body
+  bool moves, floats; ///< the rest is only read where `moves` is set
+  float friction;     ///< [0, 1]
+  float velocity[3];  ///< m/s, of the centre, during the present substep
+  float spin[3];      ///< rad/s, about the centre, in the world's axes
+  float old_position[3], old_rotation[9]; ///< the pose at the start of the substep; position and rotation are its end
 } SimBody;
 
 /// The body of an obstacle; its quaternion is normalised.

@@ -37,7 +37,7 @@ typedef struct SimError { char message[256]; } SimError;
 
 // ---- A world ---------------------------------------------------------------------------------------------------------
 
-typedef enum SimSolver { SIM_SOLVER_PBF = 0 } SimSolver;
+typedef enum SimSolver { SIM_SOLVER_PBF = 0, SIM_SOLVER_SPH = 1 } SimSolver;
 
 /// A block of water, filled with a cubic lattice of particles at the start.
 typedef struct SimBlockDef {
@@ -45,6 +45,70 @@ typedef struct SimBlockDef {
   float velocity[3];           ///< m/s at the start, default 0
   float colour[3];             ///< linear light [0, 1]; all zero: the default colour of water
 } SimBlockDef;
+
+/// A ball of water, cut out of the same lattice.
+typedef struct SimDropDef {
+  float centre[3], radius;     ///< m, radius > 0
+  float velocity[3];           ///< m/s at the start
+  float colour[3];             ///< as for a block
+} SimDropDef;
+
+typedef enum SimEmitterShape { SIM_EMITTER_DISC = 0, SIM_EMITTER_RECTANGLE = 1 } SimEmitterShape;
+
+/// A spout: layers of particles leave its opening, one whenever the last one is a spacing away. So the rate follows from
+/// opening, speed and spacing. A place that is not free (a body, other water) emits nothing until it is.
+typedef struct SimEmitterDef {
+  SimEmitterShape shape;
+  float size[2];               ///< m: disc, (diameter, –); rectangle, full width along its first and second axis
+  float position[3];           ///< m, the middle of the opening; in the obstacle's own axes where `obstacle` is set
+  float rotation[4];           ///< unit quaternion x, y, z, w; water leaves along the turned +x axis, the rectangle's first
+                               ///< axis is the turned y
+  float speed;                 ///< m/s, [0.01, 100], on top of the obstacle's
+  double start, stop;          ///< s: it runs from start until stop; stop may be INFINITY
+  float colour[3];             ///< as for a block
+  int32_t obstacle;            ///< index of the obstacle that carries it, −1: none
+} SimEmitterDef;
+
+/// A box that swallows the particles whose centres enter it.
+typedef struct SimSinkDef {
+  float min[3], max[3];        ///< m, min < max
+} SimSinkDef;
+
+typedef enum SimMotion {
+  SIM_STATIC = 0,
+  SIM_SCRIPTED = 1,            ///< follows its keys and its stroke, whatever the water does
+  SIM_DRAGGABLE = 2,           ///< goes to where sim_world_drag wants it, not faster than max_speed
+  SIM_FLOATING = 3             ///< a rigid body: gravity, the water, the container and other bodies move it
+} SimMotion;
+
+/// A pose at a moment. Between keys, positions are interpolated linearly and rotations spherically; before the first and
+/// after the last key the pose stays.
+typedef struct SimPoseKey {
+  double time;                 ///< s, growing from key to key
+  float position[3];           ///< m
+  float rotation[4];           ///< unit quaternion x, y, z, w
+} SimPoseKey;
+
+/// A body and how it moves.
+typedef struct SimObstacleDef {
+  SimObstacle body;            ///< shape, and the pose at the start
+  SimMotion motion;
+  float friction;              ///< share of the sliding speed that the wall takes from the water beside it: 0 slips freely,
+                               ///< 1 sticks; [0, 1]
+  // SIM_SCRIPTED: pose(t) = that of the keys (the start's where there are none) + stroke · (1 − cos(2π (t − start)/period))/2
+  int32_t key_count;
+  const SimPoseKey *keys;      ///< (key_count), copied
+  bool repeat;                 ///< the keys start again after the last one
+  float stroke[3];             ///< m, the paddle's way from its start to its turning point; 0: none
+  float period;                ///< s, > 0 where there is a stroke
+  double start;                ///< s, the paddle stands still before
+  // SIM_DRAGGABLE
+  float max_speed;             ///< m/s, > 0; also the bound on the speed of its farthest corner when it turns
+  // SIM_FLOATING
+  float density;               ///< kg/m³, > 0
+} SimObstacleDef;
+
+SimObstacleDef sim_default_obstacle_def(void); ///< a static box of 1 m without friction
 
 /// Everything that a world is made of. Make it with sim_default_world_def, change what you need.
 typedef struct SimWorldDef {
@@ -59,13 +123,26 @@ typedef struct SimWorldDef {
                                ///< default 0.4, range [0.05, 2]
   int32_t iterations;          ///< density iterations a substep, default 4, range [1, 100]
   float viscosity;             ///< XSPH factor c, non-dimensional, default 0.01, range [0, 0.5] (Macklin & Müller, Eq. 17)
+  float kinematic_viscosity;   ///< m²/s, ν of the liquid, default 1e-6 (water), range [0, 10]
+  float surface_tension;       ///< N/m, default 0, range [0, 10] (Akinci et al. 2013)
+  float vorticity;             ///< vorticity confinement, non-dimensional, default 0, range [0, 1] (Macklin & Müller, Eq. 16)
   float relaxation;            ///< ε_rel of the constraint, non-dimensional, default 0.1, range [1e-3, 10] (Eq. 11)
   float tensile;               ///< k_rel of the artificial pressure, non-dimensional, default 0.003, range [0, 0.1] (Eq. 13)
   SimContainer container;      ///< default: 3 × 1.6 × 1 m, corner at the origin
   int32_t block_count;
   const SimBlockDef *blocks;   ///< (block_count), copied
+  float container_friction;    ///< of the container's walls, as SimObstacleDef.friction, default 0
+  int32_t drop_count;
+  const SimDropDef *drops;     ///< (drop_count), copied
+  int32_t emitter_count;
+  const SimEmitterDef *emitters; ///< (emitter_count), copied
+  int32_t sink_count;
+  const SimSinkDef *sinks;     ///< (sink_count), copied
+  int32_t max_particles;       ///< emitters and pouring stop there; 0 (the default): SIM_MAX_PARTICLES
+  bool reuse;                  ///< at max_particles emitters take away the particles that were emitted first, default false
+  float colour_diffusion;      ///< m²/s, how fast colours of neighbouring water mix, default 0, range [0, 10]
   int32_t obstacle_count;
-  const SimObstacle *obstacles;///< (obstacle_count), copied
+  const SimObstacleDef *obstacles; ///< (obstacle_count), copied, their meshes too
   uint64_t seed;               ///< of every random choice, default 1
   float jitter;                ///< displacement of the start lattice, in spacings, default 0, range [0, 0.5]
   int32_t threads;             ///< 0 (the default): as many as there are cores
@@ -108,6 +185,10 @@ bool sim_world_set_gravity(SimWorld *world, const float gravity[3]);
 /// lie outside, stay empty. Returns the number of particles added, −1 and *error when it cannot.
 int32_t sim_world_pour(SimWorld *world, const SimBlockDef *block, SimError *error);
 
+/// Where the draggable obstacle should be from now on; it goes there at no more than its max_speed, so that nothing
+/// tunnels. false: no such draggable obstacle, or not finite. Rotation NULL: as it is.
+bool sim_world_drag(SimWorld *world, int32_t obstacle, const float position[3], const float rotation[4]);
+
 /// Write the present state to a frame. The frame belongs to `buffer`. NULL and *error when memory runs out.
 typedef struct SimFrameBuffer SimFrameBuffer;
 const SimFrame *sim_world_frame(SimWorld *world, unsigned needs, SimFrameBuffer *buffer, SimError *error);
@@ -116,6 +197,7 @@ const SimFrame *sim_world_frame(SimWorld *world, unsigned needs, SimFrameBuffer 
 typedef struct SimCounts {
   int32_t particles;
   int32_t left_out;            ///< start-up particles that lay in an obstacle or outside the container
+  int64_t emitted, swallowed, reused; ///< by emitters and pouring; by sinks; taken away at max_particles
   int64_t substeps;            ///< since creation or reset
 } SimCounts;
 SimCounts sim_world_counts(const SimWorld *world);
@@ -180,6 +262,16 @@ typedef struct SimProfile {
 } SimProfile;
 const SimProfile *sim_world_profile(const SimWorld *world);
 void sim_world_clear_profile(SimWorld *world);
+
+/// What this machine can do at best, to hold the figures of a profile against.
+typedef struct SimMachine {
+  const char *instruction_set; ///< that the simulator's kernels use here: "avx512", "avx2", "sse2" or "scalar"
+  double fma_per_second;       ///< single-precision multiply-adds, all threads together
+  double copy_per_second;      ///< bytes read plus bytes written by a copy much larger than the caches, all threads together
+} SimMachine;
+
+/// Measure it now, in about half a second. false and *error when memory runs out.
+bool sim_measure_machine(int32_t threads, SimMachine *machine, SimError *error);
 
 /// Bytes and blocks that the library holds now, over all worlds and buffers; both 0 after the last destroy.
 size_t sim_bytes_in_use(void);

@@ -89,9 +89,11 @@ static void boundary_kernel(int32_t begin, int32_t end, const void *context) {
   const SimStep *step = context;
   SimParticles *p = step->particles;
   for (int32_t i = begin; i < end; i++) {
-    float gradient[3], point[3] = {p->now.predicted[0][i], p->now.predicted[1][i], p->now.predicted[2][i]};
-    p->solid[i] = sim_boundary_solid(step->boundary, point, gradient);
-    for (int k = 0; k < 3; k++) p->solid_gradient[k][i] = gradient[k];
+    float point[3] = {p->now.predicted[0][i], p->now.predicted[1][i], p->now.predicted[2][i]};
+    SimSolid solid;
+    sim_boundary_solid(step->boundary, point, &solid);
+    p->solid[i] = solid.share;
+    for (int k = 0; k < 3; k++) p->solid_gradient[k][i] = solid.gradient[k];
   }
 }
 

@@ -52,12 +52,16 @@ static bool copy_array(void **copy, const void *source, int32_t count, size_t el
 static bool copy_def(SimWorld *world, const SimWorldDef *def) {
   world->def = *def;
   if (!copy_array((void **)&world->blocks, def->blocks, def->block_count, sizeof(SimBlockDef)) ||
-      !copy_array((void **)&world->obstacles, def->obstacles, def->obstacle_count, sizeof(SimObstacle)) ||
+      !copy_array((void **)&world->obstacle_defs, def->obstacles, def->obstacle_count, sizeof(SimObstacleDef)) ||
+      !(world->obstacles = sim_allocate((size_t)def->obstacle_count * sizeof(SimObstacle))) ||
       !(world->bodies = sim_allocate((size_t)def->obstacle_count * sizeof(SimBody))))
     return false;
   world->def.blocks = world->blocks;
-  world->def.obstacles = world->obstacles;
-  for (int32_t b = 0; b < def->obstacle_count; b++) world->bodies[b] = sim_body_make(&def->obstacles[b]);
+  world->def.obstacles = world->obstacle_defs;
+  for (int32_t b = 0; b < def->obstacle_count; b++) {
+    world->obstacles[b] = def->obstacles[b].body;
+    world->bodies[b] = sim_body_make(&def->obstacles[b].body);
+  }
   return true;
 }
 
@@ -123,6 +127,7 @@ void sim_world_destroy(SimWorld *world) {
   sim_release(world->colour);
   sim_release(world->blocks);
   sim_release(world->obstacles);
+  sim_release(world->obstacle_defs);
   sim_release(world->bodies);
   sim_release(world);
 }

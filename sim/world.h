@@ -10,7 +10,8 @@
 struct SimWorld {
   SimWorldDef def;             ///< with its own copies of blocks and obstacles
   SimBlockDef *blocks;
-  SimObstacle *obstacles;
+  SimObstacleDef *obstacle_defs;
+  SimObstacle *obstacles;      ///< with their present poses
   SimBody *bodies;
   int32_t threads;
 

@@ -4,6 +4,14 @@
 
 #include "sim/world.h"
 
+SimObstacleDef sim_default_obstacle_def(void) {
+  return (SimObstacleDef){.body = {.shape = SIM_BOX, .size = {1, 1, 1}, .rotation = {0, 0, 0, 1}, .steps = 1},
+                          .motion = SIM_STATIC,
+                          .period = 1,
+                          .max_speed = 1,
+                          .density = 500};
+}
+
 SimWorldDef sim_default_world_def(void) {
   return (SimWorldDef){.cookie = SIM_DEF_COOKIE,
                        .solver = SIM_SOLVER_PBF,
@@ -17,7 +25,8 @@ SimWorldDef sim_default_world_def(void) {
                        .viscosity = 0.01f,
                        .relaxation = 0.1f,
                        .tensile = 0.003f,
-                       .container = {{0, 0, 0}, {3, 1.6f, 1}},
+                       .container = {{0, 0, 0}, {3, 1.6f, 1}, SIM_CONTAINER_BOX},
+                       .kinematic_viscosity = 1e-6f,
                        .seed = 1};
 }
 
@@ -112,6 +121,6 @@ bool sim_def_check(const SimWorldDef *def, SimError *error) {
     if (!sim_block_check(&def->blocks[b], name, error)) return false;
   }
   for (int32_t b = 0; b < def->obstacle_count; b++)
-    if (!check_obstacle(&def->obstacles[b], b, error)) return false;
+    if (!check_obstacle(&def->obstacles[b].body, b, error)) return false;
   return true;
 }

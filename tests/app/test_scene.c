@@ -78,16 +78,16 @@ static void test_world_def_holds_the_scene(void **state) {
   assert_int_equal(def.block_count, 2);
   assert_true(def.blocks[0].velocity[0] == 1 && def.blocks[1].max[0] == 0.5f);
   assert_int_equal(def.obstacle_count, 3);
-  assert_int_equal(def.obstacles[0].shape, SIM_BOX);
-  assert_true(def.obstacles[0].size[2] == 0.3f);
+  assert_int_equal(def.obstacles[0].body.shape, SIM_BOX);
+  assert_true(def.obstacles[0].body.size[2] == 0.3f);
   // A quarter turn about y: sin 45° on y and w, nothing else.
-  assert_float_equal(def.obstacles[0].rotation[1], 0.70710678f, 1e-6);
-  assert_float_equal(def.obstacles[0].rotation[3], 0.70710678f, 1e-6);
-  assert_true(def.obstacles[0].rotation[0] == 0 && def.obstacles[0].rotation[2] == 0);
-  assert_int_equal(def.obstacles[1].shape, SIM_SPHERE);
-  assert_true(def.obstacles[1].size[0] == 0.2f);
-  assert_int_equal(def.obstacles[2].shape, SIM_CYLINDER);
-  assert_true(def.obstacles[2].size[0] == 0.2f && def.obstacles[2].size[1] == 0.5f);
+  assert_float_equal(def.obstacles[0].body.rotation[1], 0.70710678f, 1e-6);
+  assert_float_equal(def.obstacles[0].body.rotation[3], 0.70710678f, 1e-6);
+  assert_true(def.obstacles[0].body.rotation[0] == 0 && def.obstacles[0].body.rotation[2] == 0);
+  assert_int_equal(def.obstacles[1].body.shape, SIM_SPHERE);
+  assert_true(def.obstacles[1].body.size[0] == 0.2f);
+  assert_int_equal(def.obstacles[2].body.shape, SIM_CYLINDER);
+  assert_true(def.obstacles[2].body.size[0] == 0.2f && def.obstacles[2].body.size[1] == 0.5f);
   assert_true(def.seed == scene.simulation.seed && def.jitter == 0.25f && def.container.min[0] == -1);
   assert_true(scene_particle_count(&scene) == 25 * 25 * 50 + 12 * 25 * 50);
   scene_free(&scene);

@@ -3,6 +3,13 @@
 
 #include "sim/boundary.h"
 
+static float share_at(const SimBoundary *boundary, const float point[3], float gradient[3]) {
+  SimSolid solid;
+  sim_boundary_solid(boundary, point, &solid);
+  memcpy(gradient, solid.gradient, sizeof solid.gradient);
+  return solid.share;
+}
+
 static SimBoundary box(float size, SimBody *bodies, int32_t count) {
   SimCubic cubic = sim_cubic_make(0.05f, 2);
   SimBoundary boundary = {
@@ -31,7 +38,7 @@ static void walls_complete_the_lattice(void **state) {
   const double tolerance[4] = {1e-6, 1e-4, 0.004, 0.01};
   for (int walls = 0; walls <= 3; walls++) {
     float gradient[3];
-    double density = lattice_left(walls) + (double)sim_boundary_solid(&boundary, points[walls], gradient);
+    double density = lattice_left(walls) + (double)share_at(&boundary, points[walls], gradient);
     if (fabs(density - 1) > tolerance[walls]) fail_msg("%d walls: density %.5f", walls, density);
   }
 }
@@ -39,14 +46,14 @@ static void walls_complete_the_lattice(void **state) {
 static void check_gradient(const SimBoundary *boundary, const float point[3]) {
   float gradient[3], ignored[3];
   float e = 1e-3f * 0.05f;
-  sim_boundary_solid(boundary, point, gradient);
+  share_at(boundary, point, gradient);
   for (int k = 0; k < 3; k++) {
     float a[3], b[3];
     memcpy(a, point, sizeof a);
     memcpy(b, point, sizeof b);
     a[k] -= e, b[k] += e;
     double quotient =
-        ((double)sim_boundary_solid(boundary, b, ignored) - (double)sim_boundary_solid(boundary, a, ignored)) /
+        ((double)share_at(boundary, b, ignored) - (double)share_at(boundary, a, ignored)) /
         (double)(b[k] - a[k]);
     if (fabs(quotient - (double)gradient[k]) > 0.15)
       fail_msg("gradient %d at (%g, %g, %g): %g, difference quotient %g", k, (double)point[0], (double)point[1],

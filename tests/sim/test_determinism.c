@@ -25,7 +25,8 @@ static uint64_t hash_all(uint64_t hash, const SimFrame *frame) {
 static uint64_t run(int32_t threads, int frames) {
   SimBlockDef block;
   SimWorldDef def = test_def((const float[3]){1.5f, 1, 0.5f}, &block, (const float[3]){0.5f, 0.7f, 0.5f});
-  SimObstacle pillar = {SIM_CYLINDER, {0.2f, 0.6f, 0}, {0.9f, 0.3f, 0.25f}, {0, 0, 0, 1}, {0, 0, 0}};
+  SimObstacleDef pillar = sim_default_obstacle_def();
+  pillar.body = (SimObstacle){SIM_CYLINDER, {0.2f, 0.6f, 0}, {0.9f, 0.3f, 0.25f}, {0, 0, 0, 1}};
   def.obstacle_count = 1;
   def.obstacles = &pillar;
   def.threads = threads;

@@ -150,7 +150,12 @@ static void obstacles_keep_water_out(void **state) {
                                     {SIM_BOX, {0.004f, 2, 2}, {1.2f, 0.5f, 0.25f}, {0, 0, 0, 1}, {0, 0, 0}}};
   SimWorldDef def = test_def((const float[3]){1.5f, 0.9f, 0.5f}, &block, (const float[3]){0.45f, 0.7f, 0.5f});
   def.obstacle_count = 4;
-  def.obstacles = obstacles;
+  SimObstacleDef solids[4];
+  for (int b = 0; b < 4; b++) {
+    solids[b] = sim_default_obstacle_def();
+    solids[b].body = obstacles[b];
+  }
+  def.obstacles = solids;
   SimWorld *world = test_create(&def);
   assert_true(sim_world_counts(world).left_out > 50);
   SimFrameBuffer *buffer = sim_frame_buffer_create();

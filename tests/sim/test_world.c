@@ -94,19 +94,20 @@ static void bad_blocks_are_refused(void **state) {
 static void bad_obstacles_are_refused(void **state) {
   (void)state;
   const SimObstacle good = {SIM_BOX, {0.1f, 0.1f, 0.1f}, {0.6f, 0.1f, 0.2f}, {0, 0, 0, 1}, {0, 0, 0}};
-  SimObstacle obstacle = good;
+  SimObstacleDef solid = sim_default_obstacle_def();
+  solid.body = good;
   SimWorldDef def = small_def();
   def.obstacle_count = 1;
-  def.obstacles = &obstacle;
-  obstacle.size[1] = 0;
+  def.obstacles = &solid;
+  solid.body.size[1] = 0;
   refused(&def, "obstacles[0]");
-  obstacle = good, obstacle.rotation[3] = 0;
+  solid.body = good, solid.body.rotation[3] = 0;
   refused(&def, "obstacles[0]");
-  obstacle = good, obstacle.rotation[3] = NAN;
+  solid.body = good, solid.body.rotation[3] = NAN;
   refused(&def, "obstacles[0]");
-  obstacle = good, obstacle.position[0] = INFINITY;
+  solid.body = good, solid.body.position[0] = INFINITY;
   refused(&def, "obstacles[0]");
-  obstacle = good, obstacle.shape = (SimShape)9;
+  solid.body = good, solid.body.shape = (SimShape)9;
   refused(&def, "obstacles[0]");
 }
 
