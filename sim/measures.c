@@ -10,16 +10,18 @@
 #define SURFACE_ASYMMETRY 0.2f
 #define SURFACE_DENSITY 0.8f
 
-static bool at_surface(const SimParticles *p, int64_t i) {
-  return p->asymmetry[i] > SURFACE_ASYMMETRY || p->density[i] < SURFACE_DENSITY;
+// A settled world has |∇C| · spacing beside the positions in `second`.
+static bool at_surface(const SimParticles *p, uint32_t i) {
+  return p->second[4 * (size_t)i + 3] > SURFACE_ASYMMETRY || p->density[i] < SURFACE_DENSITY;
 }
 
 static bool away_from_surface(const SimWorld *world, int32_t i) {
   const SimParticles *p = &world->particles;
   const SimNeighbours *lists = &world->neighbours;
-  if (at_surface(p, i)) return false;
-  for (uint32_t k = lists->start[i]; k < lists->end[i]; k++)
-    if (at_surface(p, lists->index[k])) return false;
+  if (at_surface(p, (uint32_t)i)) return false;
+  const uint32_t *index = lists->index + (size_t)lists->start[i / SIM_CHUNK] * SIM_CHUNK + i % SIM_CHUNK;
+  for (uint32_t k = 0; k < lists->length[i / SIM_CHUNK]; k++, index += SIM_CHUNK)
+    if (*index < (uint32_t)p->count && at_surface(p, *index)) return false;
   return true;
 }
 

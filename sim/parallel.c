@@ -56,10 +56,11 @@ static void reduce_block(int32_t begin, int32_t end, const void *context) {
   }
 }
 
-// The block grows with the count so that the slots fit on the stack; it never depends on the threads.
+// The block grows with the count so that the slots fit on the stack, in multiples of SIM_BLOCK so that kernels which work
+// on chunks start at one; it never depends on the threads.
 static int32_t reduce_blocks(int32_t threads, Reduce *reduce) {
-  int32_t block = blocks_of(reduce->count, SIM_REDUCE_BLOCKS);
-  reduce->block = block < SIM_BLOCK ? SIM_BLOCK : block;
+  reduce->block = SIM_BLOCK * blocks_of(reduce->count, SIM_REDUCE_BLOCKS * SIM_BLOCK);
+  if (reduce->block < SIM_BLOCK) reduce->block = SIM_BLOCK;
   int32_t blocks = blocks_of(reduce->count, reduce->block);
   assert(blocks <= SIM_REDUCE_BLOCKS && reduce->width <= SIM_REDUCE_WIDTH);
   sim_parallel_tasks(threads, blocks, reduce_block, reduce);

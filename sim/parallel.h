@@ -43,6 +43,7 @@ void sim_parallel_for(int32_t threads, int32_t count, SimKernel *kernel, const v
 /// The same with one item a block: for few, large items.
 void sim_parallel_tasks(int32_t threads, int32_t count, SimKernel *kernel, const void *context);
 
+/// Blocks of a reduction are multiples of SIM_BLOCK long.
 /// result[k] = the sum over all items of what the kernel added to partial[k]; 0 where there is no item.
 void sim_parallel_sum(int32_t threads, int32_t count, int32_t width, SimReduceKernel *kernel, const void *context,
                       double *result);

@@ -4,50 +4,54 @@
 #include <string.h>
 
 #include "sim/memory.h"
+#include "sim/parallel.h"
+#include "sim/wide/wide.h"
 
-#define SORTED_ARRAYS 13
-#define WORK_ARRAYS 13
-
-static void list_sorted(SimSorted *sorted, void ***list) {
+int sim_particles_state(SimParticles *particles, void **list[SIM_STATE_ARRAYS]) {
+  SimSorted *now = &particles->now;
   for (int k = 0; k < 3; k++) {
-    list[k] = (void **)&sorted->position[k];
-    list[3 + k] = (void **)&sorted->velocity[k];
-    list[6 + k] = (void **)&sorted->predicted[k];
-    list[9 + k] = (void **)&sorted->next_velocity[k];
+    list[k] = (void **)&now->position[k];
+    list[3 + k] = (void **)&now->velocity[k];
+    list[6 + k] = (void **)&now->next_velocity[k];
   }
-  list[12] = (void **)&sorted->id;
+  list[9] = (void **)&now->pressure;
+  list[10] = (void **)&now->id;
+  return 11;
 }
 
-static void list_work(SimParticles *particles, void ***list) {
-  for (int k = 0; k < 3; k++) {
-    list[k] = (void **)&particles->scratch[k];
-    list[3 + k] = (void **)&particles->solid_gradient[k];
-  }
-  list[6] = (void **)&particles->density;
-  list[7] = (void **)&particles->lambda;
-  list[8] = (void **)&particles->asymmetry;
-  list[9] = (void **)&particles->solid;
-  for (int k = 0; k < 3; k++) list[10 + k] = (void **)&particles->repulsion[k];
+// Whole chunks, and one more for the particles infinitely far away.
+static size_t padded(int32_t count) {
+  return ((size_t)count + 2 * SIM_CHUNK - 1) / SIM_CHUNK * SIM_CHUNK;
 }
 
 bool sim_particles_reserve(SimParticles *particles, int32_t capacity) {
-  if (capacity <= particles->capacity) return true;
-  void **list[2 * SORTED_ARRAYS + WORK_ARRAYS];
-  list_sorted(&particles->now, list);
-  list_sorted(&particles->spare, list + SORTED_ARRAYS);
-  list_work(particles, list + 2 * SORTED_ARRAYS);
-  for (int k = 0; k < 2 * SORTED_ARRAYS + WORK_ARRAYS; k++)
-    if (!sim_reserve_keep(list[k], (size_t)capacity, sizeof(float))) return false;
+  if (particles->first && capacity <= particles->capacity) return true;
+  void **list[SIM_STATE_ARRAYS];
+  int arrays = sim_particles_state(particles, list);
+  size_t n = padded(capacity);
+  for (int k = 0; k < arrays; k++)
+    if (!sim_reserve_keep(list[k], n, sizeof(float))) return false;
+  if (!sim_reserve(&particles->spare, n, sizeof(float)) ||
+      !sim_reserve((void **)&particles->first, 4 * n, sizeof(float)) ||
+      !sim_reserve((void **)&particles->second, 4 * n, sizeof(float)) ||
+      !sim_reserve_keep((void **)&particles->density, n, sizeof(float)) ||
+      !sim_reserve((void **)&particles->solid, 4 * n, sizeof(float)) ||
+      !sim_reserve((void **)&particles->near, n / SIM_CHUNK, 1))
+    return false;
   particles->capacity = capacity;
   return true;
 }
 
 void sim_particles_free(SimParticles *particles) {
-  void **list[2 * SORTED_ARRAYS + WORK_ARRAYS];
-  list_sorted(&particles->now, list);
-  list_sorted(&particles->spare, list + SORTED_ARRAYS);
-  list_work(particles, list + 2 * SORTED_ARRAYS);
-  for (int k = 0; k < 2 * SORTED_ARRAYS + WORK_ARRAYS; k++) sim_release(*list[k]);
+  void **list[SIM_STATE_ARRAYS];
+  int arrays = sim_particles_state(particles, list);
+  for (int k = 0; k < arrays; k++) sim_release(*list[k]);
+  sim_release(particles->spare);
+  sim_release(particles->first);
+  sim_release(particles->second);
+  sim_release(particles->density);
+  sim_release(particles->solid);
+  sim_release(particles->near);
   memset(particles, 0, sizeof *particles);
 }
 
@@ -55,24 +59,63 @@ void sim_particles_add(SimParticles *particles, uint32_t id, const float positio
   assert(particles->count < particles->capacity);
   int32_t i = particles->count++;
   for (int k = 0; k < 3; k++) {
-    particles->now.position[k][i] = particles->now.predicted[k][i] = position[k];
+    particles->now.position[k][i] = position[k];
     particles->now.velocity[k][i] = particles->now.next_velocity[k][i] = velocity[k];
   }
+  particles->now.pressure[i] = 0;
   particles->now.id[i] = id;
 }
 
-bool sim_particles_sort(SimParticles *particles, SimCellSort *sort, float *const by[3], float cell_size,
-                        int32_t threads) {
-  if (!sim_grid_sort(sort, by, particles->count, cell_size, threads)) return false;
-  void **from[SORTED_ARRAYS], **to[SORTED_ARRAYS];
-  const void *source[SORTED_ARRAYS];
-  void *target[SORTED_ARRAYS];
-  list_sorted(&particles->now, from);
-  list_sorted(&particles->spare, to);
-  for (int k = 0; k < SORTED_ARRAYS; k++) source[k] = *from[k], target[k] = *to[k];
-  sim_grid_gather(sort, particles->count, threads, SORTED_ARRAYS, source, target);
-  SimSorted swap = particles->now;
-  particles->now = particles->spare;
-  particles->spare = swap;
+void sim_particles_second_as_axes(const SimParticles *particles, float *axes[3]) {
+  for (size_t k = 0; k < 3; k++) axes[k] = particles->second + k * padded(particles->count);
+}
+
+void sim_particles_pad(const SimParticles *particles, float *four) {
+  size_t end = padded(particles->count);
+  for (size_t i = (size_t)particles->count; i < end; i++)
+    for (int k = 0; k < 4; k++) four[4 * i + k] = k < 3 ? SIM_FAR : 0;
+}
+
+// ---- Sort ------------------------------------------------------------------------------------------------------------
+
+typedef struct MoveContext {
+  const SimParticles *particles;
+  const uint32_t *order;
+  float *axes[3];
+} MoveContext;
+
+static void to_first_kernel(int32_t begin, int32_t end, const void *context) {
+  const MoveContext *c = context;
+  for (int32_t i = begin; i < end; i++) {
+    float *four = c->particles->first + 4 * (size_t)i;
+    for (int k = 0; k < 3; k++) four[k] = c->axes[k][c->order[i]];
+    four[3] = 0;
+  }
+}
+
+static void to_axes_kernel(int32_t begin, int32_t end, const void *context) {
+  const MoveContext *c = context;
+  for (int32_t i = begin; i < end; i++)
+    for (int k = 0; k < 3; k++) c->axes[k][i] = c->particles->first[4 * (size_t)i + k];
+}
+
+bool sim_particles_sort(SimParticles *particles, SimCellSort *sort, float cell_size, int32_t threads) {
+  MoveContext context = {.particles = particles};
+  sim_particles_second_as_axes(particles, context.axes);
+  if (!sim_grid_sort(sort, context.axes, particles->count, cell_size, threads)) return false;
+  context.order = sort->order;
+  sim_parallel_for(threads, particles->count, to_first_kernel, &context);
+  sim_particles_pad(particles, particles->first);
+  sim_parallel_for(threads, particles->count, to_axes_kernel, &context);
+
+  void **list[SIM_STATE_ARRAYS];
+  int arrays = sim_particles_state(particles, list);
+  for (int k = 0; k < arrays; k++) {
+    const void *source = *list[k];
+    sim_grid_gather(sort, particles->count, threads, 1, &source, &particles->spare);
+    void *sorted = particles->spare;
+    particles->spare = *list[k];
+    *list[k] = sorted;
+  }
   return true;
 }

@@ -1,39 +1,62 @@
-// The particle store: structure of arrays, 64-byte aligned, sorted by grid cell.
+// The particle store: structures of arrays, 64-byte aligned, sorted by grid cell.
+//
+// Two kinds of arrays. The state follows a particle through the sort. The work arrays belong to one substep; two of them
+// hold four floats a particle side by side, because a neighbour's position is read from a random place and one such
+// place costs one load (and one cache line) instead of three.
+//
+// Every array has room for whole chunks (wide/wide.h) and one chunk more. Behind the last particle stand particles
+// infinitely far away (SIM_FAR), so that kernels need no special case for the ends of lists and of the array.
 #ifndef LIDO_SIM_PARTICLES_H
 #define LIDO_SIM_PARTICLES_H
 
 #include "sim/grid.h"
 
+/// m: so far that no kernel reaches it, and near enough that its square is finite.
+#define SIM_FAR 1e18f
+
 /// What follows a particle through the sort. Each array is (count).
 typedef struct SimSorted {
   float *position[3];      ///< m, the state at the start of the substep
   float *velocity[3];      ///< m/s, likewise; both change only when a substep has succeeded
-  float *predicted[3];     ///< m, written by predict, corrected by the solver
   float *next_velocity[3]; ///< m/s, written by predict, correct and viscosity
+  float *pressure;         ///< m²/s², what the solver starts the next substep from: of pbf, Σλ/dt²; never positive
   uint32_t *id;
 } SimSorted;
 
 typedef struct SimParticles {
   int32_t count, capacity;
-  SimSorted now, spare;    ///< the sort gathers from one into the other and swaps them
-  // Work arrays, (count), in the present order.
-  float *scratch[3];       ///< new positions or velocities of a Jacobi sweep
-  float *density;          ///< share of the rest density, written by pbf_density
-  float *lambda;           ///< m², written by pbf_density
-  float *repulsion[3];     ///< m, Σ s_corr ∇W, likewise
-  float *asymmetry;        ///< |∇C| · spacing: 0 inside, about ½ at a flat free surface; written by pbf_density
-  float *solid;            ///< the walls' share of the density, written by boundary
-  float *solid_gradient[3]; ///< 1/m, likewise
+  SimSorted now;
+  void *spare;             ///< (count) words: the sort moves an array into it and swaps the two
+  // Work arrays in the present order.
+  float *first, *second;   ///< (count, 4): x, y, z of the predicted position, m, and a number that the stages name
+  float *density;          ///< share of the rest density in a settled state; pbf keeps inherited compression here meanwhile
+  float *solid;            ///< (count, 4): gradient of the walls' share of the density, 1/m, and the share itself
+  uint8_t *near;           ///< (chunks): SIM_NEAR_… of each chunk
 } SimParticles;
 
-/// Make room, keeping the particles. false when memory runs out; nothing is lost then.
+/// What may be in reach of a chunk.
+#define SIM_NEAR_WALL 1  ///< a wall of the box: the wide kernels know it
+#define SIM_NEAR_BODY 2  ///< an obstacle, a glass, walls close to each other: boundary.h knows it
+
+/// Make room, keeping the state. false when memory runs out; nothing is lost then.
 bool sim_particles_reserve(SimParticles *particles, int32_t capacity);
 void sim_particles_free(SimParticles *particles);
 
-/// Append a particle at rest in the solver's eyes (predicted = position). There must be room.
+/// Append a particle at rest in the solver's eyes. There must be room.
 void sim_particles_add(SimParticles *particles, uint32_t id, const float position[3], const float velocity[3]);
 
-/// Sort everything in `now` by the cells of the given positions (one of its own arrays).
-bool sim_particles_sort(SimParticles *particles, SimCellSort *sort, float *const by[3], float cell_size, int32_t threads);
+/// The arrays of the state, each of 4-byte words: at most SIM_STATE_ARRAYS; returns how many.
+#define SIM_STATE_ARRAYS 16
+int sim_particles_state(SimParticles *particles, void **list[SIM_STATE_ARRAYS]);
+
+/// The work array `second` as three arrays x, y, z of one float a particle (while nobody needs it otherwise).
+void sim_particles_second_as_axes(const SimParticles *particles, float *axes[3]);
+
+/// Sort the state by the cells of the predicted positions, which stand in `second` as axes, and leave them sorted in `first`
+/// and, as axes, in `second`.
+bool sim_particles_sort(SimParticles *particles, SimCellSort *sort, float cell_size, int32_t threads);
+
+/// Put the particles infinitely far away behind the last one of `first` or `second`.
+void sim_particles_pad(const SimParticles *particles, float *four);
 
 #endif

@@ -120,14 +120,15 @@ typedef struct SimWorldDef {
   float gravity[3];            ///< m/s², default (0, −9.81, 0)
   float time_step;             ///< s, the longest substep; 0 (the default): adaptive, from `cfl`
   float cfl;                   ///< adaptive step: the fastest particle moves at most this many spacings a substep,
-                               ///< default 0.4, range [0.05, 2]
-  int32_t iterations;          ///< density iterations a substep, default 4, range [1, 100]
+                               ///< default 0.8, range [0.05, 2]
+  int32_t iterations;          ///< density iterations a substep, default 4, range [1, 100]; the last of several moves
+                               ///< particles without changing their velocity (solver_pbf.h)
   float viscosity;             ///< XSPH factor c, non-dimensional, default 0.01, range [0, 0.5] (Macklin & Müller, Eq. 17)
   float kinematic_viscosity;   ///< m²/s, ν of the liquid, default 1e-6 (water), range [0, 10]
   float surface_tension;       ///< N/m, default 0, range [0, 10] (Akinci et al. 2013)
   float vorticity;             ///< vorticity confinement, non-dimensional, default 0, range [0, 1] (Macklin & Müller, Eq. 16)
   float relaxation;            ///< ε_rel of the constraint, non-dimensional, default 0.1, range [1e-3, 10] (Eq. 11)
-  float tensile;               ///< k_rel of the artificial pressure, non-dimensional, default 0.003, range [0, 0.1] (Eq. 13)
+  float tensile;               ///< k_rel of the artificial pressure, non-dimensional, default 0, range [0, 0.1] (Eq. 13)
   SimContainer container;      ///< default: 3 × 1.6 × 1 m, corner at the origin
   int32_t block_count;
   const SimBlockDef *blocks;   ///< (block_count), copied
@@ -243,7 +244,7 @@ void sim_frame_buffer_destroy(SimFrameBuffer *buffer); ///< NULL is allowed
 
 /// Stages of a step and of a frame, in the order in which they run.
 #define SIM_STAGES(X) \
-  X(predict) X(sort) X(neighbours) X(boundary) X(density) X(correct) X(velocity) X(viscosity) \
+  X(predict) X(sort) X(neighbours) X(warm_start) X(density) X(correct) X(velocity) X(viscosity) \
   X(frame) X(classify) X(anisotropy) X(flags) X(height_field)
 typedef enum SimStage {
 #define SIM_STAGE_ENUM(name) SIM_STAGE_##name,

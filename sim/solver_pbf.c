@@ -1,274 +1,134 @@
-// Position based fluids: see solver_pbf.h.
+// Position based fluids: see solver_pbf.h; the sweeps are in wide/pbf.c.
 #include "sim/solver_pbf.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "sim/parallel.h"
+#include "sim/world.h"
 
-// ---- Predict ---------------------------------------------------------------------------------------------------------
+// The longest adaptive substep: gravity alone moves a particle from rest by this share of a spacing. Beyond about 0.015 the
+// iterations no longer follow and a pool at rest simmers.
+#define REST_MOVE 0.01f
+// Lists are built anew when a particle has moved by this share of the support since. A pair that comes into reach
+// meanwhile is missed; at most it would have added 2 (2 · 0.1)³ W(0) to a density.
+#define STALE 0.1f
 
-// A push is full on its ray and falls off smoothly (1 − smoothstep) to nothing at its radius.
-static void add_push(const SimPush *push, const float point[3], float acceleration[3]) {
-  float d[3], along = 0, distance2 = 0;
-  for (int k = 0; k < 3; k++) {
-    d[k] = point[k] - push->origin[k];
-    along += d[k] * push->direction[k];
-  }
-  for (int k = 0; k < 3; k++) distance2 += d[k] * d[k];
-  float t = (distance2 - along * along) / (push->radius * push->radius);
-  if (!(t < 1)) return;
-  t = t > 0 ? sqrtf(t) : 0;
-  float share = 1 - t * t * (3 - 2 * t);
-  for (int k = 0; k < 3; k++) acceleration[k] += share * push->acceleration[k];
+static SimStep make_step(SimWorld *world, float dt) {
+  SimStep step = sim_step_make(world, dt);
+  float strength = world->cubic.lattice_gradient;
+  step.omega = world->cubic.omega;
+  step.relaxation = world->def.relaxation * strength;
+  step.tensile = world->def.tensile / strength;
+  step.warm = dt * dt;
+  return step;
 }
 
-static void predict_kernel(int32_t begin, int32_t end, const void *context) {
-  const SimStep *step = context;
-  SimSorted *now = &step->particles->now;
-  for (int32_t i = begin; i < end; i++) {
-    float from[3], to[3], acceleration[3] = {step->gravity[0], step->gravity[1], step->gravity[2]};
-    for (int k = 0; k < 3; k++) from[k] = now->position[k][i];
-    for (int32_t p = 0; p < step->push_count; p++) add_push(&step->pushes[p], from, acceleration);
-    for (int k = 0; k < 3; k++) {
-      float v = now->velocity[k][i] + step->dt * acceleration[k];
-      now->next_velocity[k][i] = v;
-      to[k] = from[k] + step->dt * v;
-    }
-    const float free[3] = {to[0], to[1], to[2]};
-    sim_boundary_clamp(step->boundary, from, to);
-    for (int k = 0; k < 3; k++) {
-      now->predicted[k][i] = to[k];
-      if (to[k] != free[k]) now->next_velocity[k][i] += (to[k] - free[k]) * step->inverse_dt;
-    }
-  }
-}
-
-void sim_pbf_predict(const SimStep *step) {
-  sim_parallel_for(step->threads, step->particles->count, predict_kernel, step);
-}
-
-// ---- Pairs -----------------------------------------------------------------------------------------------------------
-
-// A neighbour list is worked off in pieces of up to PIECE: first the differences are gathered, then the kernel is
-// evaluated in a loop without branches that the compiler turns into vector instructions, then the sums are taken in
-// LANES interleaved parts. The order of all additions is fixed, whatever the instruction set. What is left of a piece up
-// to a multiple of LANES is filled with pairs that are too far apart to count.
-#define PIECE 64
-#define LANES 4
-
-typedef struct Pairs {
-  int32_t count; ///< a multiple of LANES
-  float dx[PIECE], dy[PIECE], dz[PIECE];
-} Pairs;
-
-static void gather_pairs(Pairs *pairs, float *const position[3], int32_t i, const uint32_t *index, int32_t count,
-                         float far) {
-  const float *x = position[0], *y = position[1], *z = position[2];
-  float px = x[i], py = y[i], pz = z[i];
-  for (int32_t k = 0; k < count; k++) {
-    uint32_t j = index[k];
-    pairs->dx[k] = px - x[j];
-    pairs->dy[k] = py - y[j];
-    pairs->dz[k] = pz - z[j];
-  }
-  pairs->count = (count + LANES - 1) / LANES * LANES;
-  for (int32_t k = count; k < pairs->count; k++) {
-    pairs->dx[k] = far;
-    pairs->dy[k] = pairs->dz[k] = 0;
-  }
-}
-
-static float lane_sum(const float lane[LANES]) {
-  return (lane[0] + lane[1]) + (lane[2] + lane[3]);
-}
-
-// ---- Density and λ ---------------------------------------------------------------------------------------------------
-
-static void boundary_kernel(int32_t begin, int32_t end, const void *context) {
-  const SimStep *step = context;
-  SimParticles *p = step->particles;
-  for (int32_t i = begin; i < end; i++) {
-    float point[3] = {p->now.predicted[0][i], p->now.predicted[1][i], p->now.predicted[2][i]};
-    SimSolid solid;
-    sim_boundary_solid(step->boundary, point, &solid);
-    p->solid[i] = solid.share;
-    for (int k = 0; k < 3; k++) p->solid_gradient[k][i] = solid.gradient[k];
-  }
-}
-
-void sim_pbf_boundary(const SimStep *step) {
-  sim_parallel_for(step->threads, step->particles->count, boundary_kernel, step);
-}
-
-/// Sums over the neighbours of one particle, in LANES parts.
-typedef struct DensitySums {
-  float density[LANES], squares[LANES];
-  float gradient[3][LANES];  ///< Σ V ∇W
-  float repulsion[3][LANES]; ///< Σ s_corr V ∇W
-} DensitySums;
-
-static void add_density(DensitySums *sums, const Pairs *pairs, const SimStep *step, float *over_r) {
-  const SimCubic cubic = step->cubic;
-  float w[PIECE], g[PIECE], s[PIECE];
-  float inverse_reference = 1 / sim_cubic_value(&cubic, 0.2f * cubic.h), tensile = step->tensile;
-  float tiny = 1e-6f * cubic.spacing; // two particles in one place push each other nowhere; they do not divide by zero
-  for (int32_t k = 0; k < pairs->count; k++) {
-    float dx = pairs->dx[k], dy = pairs->dy[k], dz = pairs->dz[k];
-    float r = sqrtf(dx * dx + dy * dy + dz * dz);
-    w[k] = sim_cubic_value(&cubic, r);
-    g[k] = sim_cubic_gradient(&cubic, r);
-    over_r[k] = g[k] / (r > tiny ? r : tiny);
-    float ratio = w[k] * inverse_reference;
-    s[k] = -tensile * (ratio * ratio) * (ratio * ratio) * over_r[k];
-  }
-  for (int32_t k = 0; k < pairs->count; k += LANES)
-    for (int lane = 0; lane < LANES; lane++) {
-      int32_t at = k + lane;
-      sums->density[lane] += w[at];
-      sums->squares[lane] += g[at] * g[at];
-      sums->gradient[0][lane] += over_r[at] * pairs->dx[at];
-      sums->gradient[1][lane] += over_r[at] * pairs->dy[at];
-      sums->gradient[2][lane] += over_r[at] * pairs->dz[at];
-      sums->repulsion[0][lane] += s[at] * pairs->dx[at];
-      sums->repulsion[1][lane] += s[at] * pairs->dy[at];
-      sums->repulsion[2][lane] += s[at] * pairs->dz[at];
-    }
-}
-
-// λ = −ω C / (Σ_k |∇_k C|² + ε), Eq. 11. The gradient with respect to i itself includes the walls; walls do not move, so
-// they have no gradient of their own.
-static void finish_density(const SimStep *step, int32_t i, const DensitySums *sums) {
-  SimParticles *p = step->particles;
-  float density = step->cubic.value_scale + p->solid[i] + lane_sum(sums->density), own = 0, c = density - 1;
-  for (int k = 0; k < 3; k++) {
-    float gradient = p->solid_gradient[k][i] + lane_sum(sums->gradient[k]);
-    own += gradient * gradient;
-    p->repulsion[k][i] = lane_sum(sums->repulsion[k]);
-  }
-  p->density[i] = density;
-  p->asymmetry[i] = sqrtf(own) * step->cubic.spacing;
-  p->lambda[i] = c > 0 ? -step->omega * c / (lane_sum(sums->squares) + own + step->relaxation) : 0;
-}
-
-static void density_kernel(int32_t begin, int32_t end, const void *context) {
-  const SimStep *step = context;
-  const SimNeighbours *lists = step->neighbours;
-  Pairs pairs;
-  float over_r[PIECE];
-  for (int32_t i = begin; i < end; i++) {
-    DensitySums sums = {{0}, {0}, {{0}}, {{0}}};
-    for (uint32_t k = lists->start[i]; k < lists->end[i]; k += PIECE) {
-      uint32_t count = lists->end[i] - k < PIECE ? lists->end[i] - k : PIECE;
-      gather_pairs(&pairs, step->particles->now.predicted, i, lists->index + k, (int32_t)count, 2 * step->cubic.h);
-      add_density(&sums, &pairs, step, over_r);
-      memcpy(lists->gradient + k, over_r, count * sizeof(float));
-    }
-    finish_density(step, i, &sums);
-  }
-}
-
-void sim_pbf_density(const SimStep *step) {
-  sim_parallel_for(step->threads, step->particles->count, density_kernel, step);
-}
-
-// ---- Correction ------------------------------------------------------------------------------------------------------
-
-static void add_weighted(const Pairs *pairs, const float weight[PIECE], float sum[3][LANES]) {
-  for (int32_t k = 0; k < pairs->count; k += LANES)
-    for (int lane = 0; lane < LANES; lane++) {
-      sum[0][lane] += weight[k + lane] * pairs->dx[k + lane];
-      sum[1][lane] += weight[k + lane] * pairs->dy[k + lane];
-      sum[2][lane] += weight[k + lane] * pairs->dz[k + lane];
-    }
-}
-
-// Δp_i = Σ_j (λ_i + λ_j + s_corr) ∇W, Eq. 14, s_corr = −k (W(r)/W(Δq))⁴, Δq = 0.2 h, Eq. 13 (summed up with the density).
-//
-// A wall has no λ of its own: its term is λ_i ∇f only, the gradient of what the wall adds to C_i. Mirroring the
-// particle's pressure (2 λ_i) would not be the gradient of any constraint; it drives water round and round along walls.
-static void correction(const SimStep *step, int32_t i, float move[3]) {
-  const SimParticles *p = step->particles;
-  const SimNeighbours *lists = step->neighbours;
-  Pairs pairs;
-  float sum[3][LANES] = {{0}}, factor[PIECE] = {0}, own = p->lambda[i];
-  for (uint32_t k = lists->start[i]; k < lists->end[i]; k += PIECE) {
-    uint32_t count = lists->end[i] - k < PIECE ? lists->end[i] - k : PIECE;
-    gather_pairs(&pairs, p->now.predicted, i, lists->index + k, (int32_t)count, 0);
-    for (uint32_t a = 0; a < count; a++) factor[a] = (own + p->lambda[lists->index[k + a]]) * lists->gradient[k + a];
-    for (int32_t a = (int32_t)count; a < pairs.count; a++) factor[a] = 0;
-    add_weighted(&pairs, factor, sum);
-  }
-  for (int k = 0; k < 3; k++) move[k] = lane_sum(sum[k]) + p->repulsion[k][i] + own * p->solid_gradient[k][i];
-}
-
-// A correction changes the velocity by Δp/dt, and where the clamp had a say, by what was really moved. Taking Δp itself
-// instead of the difference of rounded positions keeps the sum over all particles, the momentum, to the last digits.
-static void correct_kernel(int32_t begin, int32_t end, const void *context, double *longest) {
-  const SimStep *step = context;
-  SimParticles *p = step->particles;
-  for (int32_t i = begin; i < end; i++) {
-    float from[3], free[3], to[3], move[3], d2 = 0;
-    correction(step, i, move);
-    for (int k = 0; k < 3; k++) {
-      from[k] = p->now.position[k][i];
-      to[k] = free[k] = p->now.predicted[k][i] + move[k];
-    }
-    sim_boundary_clamp(step->boundary, from, to);
-    for (int k = 0; k < 3; k++) {
-      if (to[k] != free[k]) move[k] = to[k] - p->now.predicted[k][i];
-      p->now.next_velocity[k][i] += move[k] * step->inverse_dt;
-      d2 += move[k] * move[k];
-      p->scratch[k][i] = to[k];
-    }
-    if (!((double)d2 <= longest[0])) longest[0] = isnan(d2) ? INFINITY : (double)d2;
-  }
-}
-
-static void swap3(float *a[3], float *b[3]) {
-  for (int k = 0; k < 3; k++) {
-    float *t = a[k];
-    a[k] = b[k];
-    b[k] = t;
-  }
-}
-
-double sim_pbf_correct(const SimStep *step) {
-  SimParticles *p = step->particles;
+// Returns the longest move, m; infinite if a position is not finite.
+static double correct(const SimStep *step) {
   double longest = 0;
-  sim_parallel_max(step->threads, p->count, 1, correct_kernel, step, &longest);
-  swap3(p->now.predicted, p->scratch);
+  sim_particles_pad(step->particles, step->particles->second);
+  sim_parallel_max(step->threads, step->particles->count, 1, step->wide->pbf_correct, step, &longest);
+  sim_particles_pad(step->particles, step->particles->first);
   return sqrt(longest);
 }
 
-// ---- Viscosity -------------------------------------------------------------------------------------------------------
+static bool check_move(SimWorld *world, double moved, SimError *error) {
+  if (isfinite(moved)) return true;
+  const float *x = world->particles.first;
+  int32_t i = 0;
+  while (i < world->particles.count - 1 && isfinite(x[4 * (size_t)i] + x[4 * (size_t)i + 1] + x[4 * (size_t)i + 2])) i++;
+  return sim_fail(error, "%s: particle %u has no finite position at %.6g s", sim_stage_name(SIM_STAGE_correct),
+                  world->particles.now.id[i], world->time);
+}
 
-static void viscosity_kernel(int32_t begin, int32_t end, const void *context) {
-  const SimStep *step = context;
-  const SimCubic cubic = step->cubic;
-  const SimNeighbours *lists = step->neighbours;
+static void to_axes_kernel(int32_t begin, int32_t end, const void *context) {
+  const SimParticles *p = context;
+  float *axes[3];
+  sim_particles_second_as_axes(p, axes);
+  for (int32_t i = begin; i < end; i++)
+    for (int k = 0; k < 3; k++) axes[k][i] = p->first[4 * (size_t)i + k];
+}
+
+static bool renew_lists(SimWorld *world, double *since, SimError *error) {
+  sim_parallel_for(world->threads, world->particles.count, to_axes_kernel, &world->particles);
+  return sim_step_neighbours(world, SIM_STAGE_sort, SIM_STAGE_neighbours, since, error);
+}
+
+static void start_to_second_kernel(int32_t begin, int32_t end, const void *context) {
+  const SimParticles *p = context;
+  for (int32_t i = begin; i < end; i++)
+    for (int k = 0; k < 4; k++) p->second[4 * (size_t)i + k] = k < 3 ? p->now.position[k][i] : 0;
+}
+
+// What the state brings along: its compression, and the pressure that it was left with.
+static bool warm_start(SimWorld *world, const SimStep *step, double *moved, double *since, SimError *error) {
   SimParticles *p = step->particles;
-  float *const *v = p->now.next_velocity;
-  Pairs pairs, velocities;
-  float w[PIECE];
-  for (int32_t i = begin; i < end; i++) {
-    float sum[3][LANES] = {{0}};
-    for (uint32_t k = lists->start[i]; k < lists->end[i]; k += PIECE) {
-      uint32_t count = lists->end[i] - k < PIECE ? lists->end[i] - k : PIECE;
-      gather_pairs(&pairs, p->now.predicted, i, lists->index + k, (int32_t)count, 2 * cubic.h);
-      gather_pairs(&velocities, v, i, lists->index + k, (int32_t)count, 0);
-      for (int32_t a = 0; a < pairs.count; a++) {
-        float dx = pairs.dx[a], dy = pairs.dy[a], dz = pairs.dz[a];
-        w[a] = sim_cubic_value(&cubic, sqrtf(dx * dx + dy * dy + dz * dz));
-      }
-      add_weighted(&velocities, w, sum);
-    }
-    for (int a = 0; a < 3; a++) p->scratch[a][i] = v[a][i] - step->viscosity * lane_sum(sum[a]);
-  }
+  sim_parallel_for(step->threads, p->count, start_to_second_kernel, p);
+  sim_particles_pad(p, p->second);
+  sim_parallel_for(step->threads, p->count, step->wide->pbf_inherit, step);
+  sim_parallel_for(step->threads, p->count, step->wide->pbf_prepare, step);
+  *moved = correct(step);
+  sim_step_lap(world, SIM_STAGE_warm_start, since);
+  return check_move(world, *moved, error);
 }
 
-void sim_pbf_viscosity(const SimStep *step) {
-  if (step->viscosity <= 0) return;
-  sim_parallel_for(step->threads, step->particles->count, viscosity_kernel, step);
-  swap3(step->particles->now.next_velocity, step->particles->scratch);
+// The density iterations. λ is never computed from stale neighbours.
+static bool solve_density(SimWorld *world, SimStep *step, double *since, SimError *error) {
+  double stale = (double)(STALE * world->cubic.h), moved;
+  if (!warm_start(world, step, &moved, since, error)) return false;
+  for (int32_t k = 0; k < world->def.iterations; k++) {
+    if (moved > stale) {
+      if (!renew_lists(world, since, error)) return false;
+      moved = 0;
+    }
+    step->stabilise = k > 0 && k == world->def.iterations - 1;
+    sim_parallel_for(step->threads, step->particles->count, step->wide->pbf_density, step);
+    sim_step_lap(world, SIM_STAGE_density, since);
+    double move = correct(step);
+    sim_step_lap(world, SIM_STAGE_correct, since);
+    if (!check_move(world, move, error)) return false;
+    moved += move;
+  }
+  return true;
 }
+
+typedef struct ScaleContext {
+  float *value, factor;
+} ScaleContext;
+
+static void scale_kernel(int32_t begin, int32_t end, const void *context) {
+  const ScaleContext *c = context;
+  for (int32_t i = begin; i < end; i++) c->value[i] *= c->factor;
+}
+
+static bool substep(SimWorld *world, float dt, SimError *error) {
+  double since = sim_milliseconds();
+  SimStep step = make_step(world, dt);
+
+  sim_step_predict(&step);
+  if (!sim_step_check(world, SIM_STAGE_predict, error)) return false;
+  sim_step_lap(world, SIM_STAGE_predict, &since);
+
+  if (!sim_step_neighbours(world, SIM_STAGE_sort, SIM_STAGE_neighbours, &since, error)) return false;
+  world->profile.neighbour_pairs += world->neighbours.pairs;
+
+  if (!solve_density(world, &step, &since, error)) return false;
+  ScaleContext scale = {world->particles.now.pressure, step.inverse_dt * step.inverse_dt};
+  sim_parallel_for(step.threads, world->particles.count, scale_kernel, &scale);
+  if (!sim_step_check(world, SIM_STAGE_velocity, error)) return false;
+  sim_step_lap(world, SIM_STAGE_velocity, &since);
+
+  sim_step_viscosity(&step);
+  sim_step_lap(world, SIM_STAGE_viscosity, &since);
+
+  sim_step_commit(world, dt);
+  return true;
+}
+
+static double longest(const SimWorld *world) {
+  double pull = (double)sim_pull(world);
+  return pull > 0 ? sqrt((double)REST_MOVE * (double)world->cubic.spacing / pull) : 1.0 / 60;
+}
+
+const SimMethod sim_method_pbf = {.name = "pbf", .substep = substep, .longest = longest};

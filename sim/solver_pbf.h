@@ -1,52 +1,45 @@
 // Position based fluids: Macklin & Müller, Position Based Fluids, 2013.
 //
 // A particle's constraint is C = ρ/ρ0 − 1 ≤ 0 (Eq. 1, as an inequality: water resists compression, a free surface is not
-// pulled together, so particles there do not clump). One Jacobi iteration is pbf_boundary, pbf_density (λ, Eq. 11) and
-// pbf_correct (Δp, Eq. 14, then the hard clamp to the walls, and the velocity that follows from both). Then pbf_viscosity
-// (XSPH, Eq. 17).
+// pulled together, so particles there do not clump). One Jacobi iteration is two sweeps: pbf_density (λ, Eq. 11) and
+// pbf_correct (Δp, Eq. 14, then the hard clamp to the walls, and the velocity that follows from both).
+//
+// Projected. What the iterations of a substep add up to, Σλ, is a pressure (times −dt²), and pressure cannot pull. It is
+// that sum which is kept from becoming positive, not each iteration's λ: an iteration may take back what an earlier one
+// did too much. (Clamping C ≥ 0 in each iteration instead can only ever push; what it overshoots stays in the water as
+// heat, and a pool never comes to rest.) This is the projected Jacobi method for the complementarity of density and
+// pressure.
+//
+// Warm start. In the next substep the pressure is nearly the same. So λ starts from Σλ of the last substep, scaled by dt²,
+// and the iterations only have to find the difference: the weight of a deep pool need not be built up from nothing, layer
+// by layer, in every substep. Limits: a new particle starts from 0; a particle that leaves the water has its pressure
+// taken back by the first iteration.
+//
+// Motion and position apart. A pressure that is carried on and also integrates what is left of the density error would be a
+// controller with nothing but an integral term on a double integrator: every smooth mode that the iterations do not
+// resolve grows. So the iterations work against new compression only: C_i at the end may be as large as it was at the
+// start of the substep (pbf_inherit), which makes Σλ the pressure that keeps the flow free of divergence. What compression is
+// left is removed by the last iteration of a substep, which moves particles but leaves their velocities alone, so that
+// no error of density ever turns into motion (the idea of Macklin et al., Unified Particle Physics for Real-Time
+// Applications, 2014, section 4.4; Bender & Koschier, Divergence-Free Smoothed Particle Hydrodynamics, 2015, likewise solve
+// for density and divergence apart). A pool at rest is then 10 to 100 times calmer than with one kind of iteration.
 //
 // Damped Jacobi. All particles are corrected at once, and each counts in the constraints of its ~32 neighbours, so the
 // corrections add up: with the full λ of Eq. 11 a ripple of 3.4 spacings (kernel of two spacings) is overcorrected 2.9-fold,
-// grows, and keeps the water boiling. λ is therefore scaled by ω, chosen so that the worst ripple is corrected 1.44-fold
-// (see sim_cubic_make for the estimate): 0.5 for a support of two spacings.
+// grows, and keeps the water boiling. λ is therefore scaled by ω, chosen so that the worst ripple is corrected 1.7-fold
+// (see sim_cubic_make for the estimate): 0.6 for a support of two spacings.
 //
 // Scales. ε of Eq. 11 has the unit of |∇C|², 1/m²; the artificial pressure k of Eq. 13 that of λ, m². Both are given here
 // as shares of what the lattice at rest has, S = Σ|∇C|²: ε = ε_rel S and k = k_rel/S. So one pair of numbers serves every
 // particle size.
+//
+// Walls. A wall has no λ of its own: its term is λ_i ∇f only, the gradient of what the wall adds to C_i. Mirroring the
+// particle's pressure (2 λ_i) would not be the gradient of any constraint; it drives water round and round along walls.
 #ifndef LIDO_SIM_SOLVER_PBF_H
 #define LIDO_SIM_SOLVER_PBF_H
 
-#include "sim/boundary.h"
-#include "sim/neighbours.h"
-#include "sim/particles.h"
-#include "sim/sim.h"
+#include "sim/solver.h"
 
-/// What travels through one substep.
-typedef struct SimStep {
-  int32_t threads;
-  float dt, inverse_dt;       ///< s, 1/s
-  SimCubic cubic;
-  float omega;                ///< ω, damping of the Jacobi iteration
-  float relaxation;           ///< 1/m², ε
-  float tensile;              ///< m², k
-  float viscosity;            ///< XSPH's c
-  float gravity[3];           ///< m/s²
-  int32_t push_count;
-  const SimPush *pushes;
-  const SimBoundary *boundary;
-  SimParticles *particles;
-  SimNeighbours *neighbours;
-} SimStep;
-
-/// v* = v + dt a, x* = x + dt v*, clamped; a is gravity and the pushes.
-void sim_pbf_predict(const SimStep *step);
-/// The walls' share of the density at the predicted positions.
-void sim_pbf_boundary(const SimStep *step);
-/// Density, λ and the pair gradients at the predicted positions.
-void sim_pbf_density(const SimStep *step);
-/// Move the predicted positions by Δp and clamp them; v* += (what was moved)/dt. Returns the longest move, m; NaN if a position is not finite.
-double sim_pbf_correct(const SimStep *step);
-/// XSPH with pair weights that are the same from both sides, so that momentum is kept.
-void sim_pbf_viscosity(const SimStep *step);
+extern const SimMethod sim_method_pbf;
 
 #endif

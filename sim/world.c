@@ -11,11 +11,10 @@
 #include "sim/memory.h"
 #include "sim/parallel.h"
 
-// Neighbour lists reach this much beyond the support, as a share of it.
-#define LIST_MARGIN 0.05f
-// The longest adaptive substep: gravity alone moves a particle from rest by this share of a spacing. It bounds how far a
-// column of water is compressed when the iterations meet it: by about depth/spacing · this / (4 · iterations).
-#define REST_MOVE 0.004f
+// A substep is at most this much longer than the one before, and the first one this much shorter than the longest: the
+// pressure that the solver starts from has to be built up first, and water that falls meanwhile is compressed.
+#define GROWTH 1.5
+#define FIRST 0.1
 
 bool sim_fail(SimError *error, const char *format, ...) {
   if (error) {
@@ -69,10 +68,15 @@ static float length3(const float v[3]) {
   return sqrtf(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
-void sim_world_raise_speed_limit(SimWorld *world) {
-  float size[3], pull = length3(world->gravity);
-  for (int k = 0; k < 3; k++) size[k] = world->def.container.max[k] - world->def.container.min[k];
+float sim_pull(const SimWorld *world) {
+  float pull = length3(world->gravity);
   for (int32_t p = 0; p < world->push_count; p++) pull += length3(world->pushes[p].acceleration);
+  return pull;
+}
+
+void sim_world_raise_speed_limit(SimWorld *world) {
+  float size[3], pull = sim_pull(world);
+  for (int k = 0; k < 3; k++) size[k] = world->def.container.max[k] - world->def.container.min[k];
   float diagonal = length3(size), limit = fmaxf(100 * diagonal, 50 * sqrtf(2 * pull * diagonal));
   world->speed_limit = fmaxf(world->speed_limit, limit);
 }
@@ -83,12 +87,13 @@ static bool start(SimWorld *world, SimError *error) {
   world->coloured = false;
   memcpy(world->gravity, world->def.gravity, sizeof world->gravity);
   world->push_count = 0;
-  world->time = 0;
+  world->time = world->last_dt = 0;
   world->advances = 0;
   world->settled = world->failed = false;
   world->counts = (SimCounts){0};
   world->speed_limit = 0;
   sim_world_raise_speed_limit(world);
+  if (!sim_particles_reserve(&world->particles, 0)) return sim_fail(error, "out of memory");
   for (int32_t b = 0; b < world->def.block_count; b++)
     if (sim_fill_block(world, &world->blocks[b], true, error) < 0) return false;
   return sim_world_settle(world, error);
@@ -103,12 +108,15 @@ SimWorld *sim_world_create(const SimWorldDef *def, SimError *error) {
     return NULL;
   }
   world->threads = sim_parallel_threads(def->threads);
+  world->wide = sim_wide();
+  world->method = sim_method(def->solver);
   world->cubic = sim_cubic_make(2 * def->particle_radius, def->support);
   world->boundary = (SimBoundary){.container = def->container,
                                   .clearance = def->particle_radius,
                                   .body_count = def->obstacle_count,
                                   .bodies = world->bodies};
   sim_wall_make(&world->boundary.wall, &world->cubic);
+  sim_wall_table_make(&world->wall, &world->boundary.wall);
   if (!start(world, error)) {
     sim_world_destroy(world);
     return NULL;
@@ -143,157 +151,13 @@ void sim_world_reset(SimWorld *world) {
 
 // ---- The step --------------------------------------------------------------------------------------------------------
 
-static void lap(SimWorld *world, SimStage stage, double *since) {
-  double now = sim_milliseconds();
-  world->profile.milliseconds[stage] += now - *since;
-  *since = now;
-}
-
-static SimStep make_step(SimWorld *world, float dt) {
-  float strength = world->cubic.lattice_gradient;
-  SimStep step = {.threads = world->threads,
-                  .dt = dt,
-                  .inverse_dt = dt > 0 ? 1 / dt : 0,
-                  .cubic = world->cubic,
-                  .omega = world->cubic.omega,
-                  .relaxation = world->def.relaxation * strength,
-                  .tensile = world->def.tensile / strength,
-                  .viscosity = world->def.viscosity,
-                  .push_count = world->push_count,
-                  .pushes = world->pushes,
-                  .boundary = &world->boundary,
-                  .particles = &world->particles,
-                  .neighbours = &world->neighbours};
-  memcpy(step.gravity, world->gravity, sizeof step.gravity);
-  return step;
-}
-
-// Sort by the given positions and build the lists from the (then sorted) predicted ones.
-static bool find_neighbours(SimWorld *world, float *const by[3], SimStage sort_stage, SimStage list_stage,
-                            double *since, SimError *error) {
-  float radius = world->cubic.h * (1 + LIST_MARGIN);
-  SimParticles *particles = &world->particles;
-  if (!sim_particles_sort(particles, &world->sort, by, radius, world->threads)) return sim_fail(error, "out of memory");
-  lap(world, sort_stage, since);
-  SimNeighbourResult result = sim_neighbours_build(&world->neighbours, &world->sort.grid, particles->now.predicted,
-                                                   particles->count, radius, world->threads);
-  lap(world, list_stage, since);
-  if (result == SIM_NEIGHBOURS_NO_MEMORY) return sim_fail(error, "out of memory");
-  if (result == SIM_NEIGHBOURS_CROWDED)
-    return sim_fail(error, "neighbours: the particles are crowded into one place, %lld pairs",
-                    (long long)world->neighbours.pairs);
-  return true;
-}
-
-static void speed_kernel(int32_t begin, int32_t end, const void *context, double *fastest) {
-  float *const *v = context;
-  for (int32_t i = begin; i < end; i++) {
-    float v2 = v[0][i] * v[0][i] + v[1][i] * v[1][i] + v[2][i] * v[2][i];
-    if (!((double)v2 <= fastest[0])) fastest[0] = isnan(v2) ? INFINITY : (double)v2;
-  }
-}
-
-static float largest_speed(const SimWorld *world, float *const velocity[3]) {
-  double fastest = 0;
-  sim_parallel_max(world->threads, world->particles.count, 1, speed_kernel, velocity, &fastest);
-  return (float)sqrt(fastest);
-}
-
-// Whether the velocities can be followed; otherwise name the first particle for which they cannot.
-static bool check(SimWorld *world, SimStage stage, SimError *error) {
-  float *const *v = world->particles.now.next_velocity;
-  if (largest_speed(world, v) <= world->speed_limit) return true;
-  for (int32_t i = 0; i < world->particles.count; i++) {
-    float speed = length3((float[3]){v[0][i], v[1][i], v[2][i]});
-    if (speed <= world->speed_limit) continue;
-    if (!isfinite(speed))
-      return sim_fail(error, "%s: particle %u has no finite velocity at %.6g s", sim_stage_name(stage),
-                      world->particles.now.id[i], world->time);
-    return sim_fail(error, "%s: particle %u exploded to %.3g m/s (limit %.3g) at %.6g s", sim_stage_name(stage),
-                    world->particles.now.id[i], (double)speed, (double)world->speed_limit, world->time);
-  }
-  return sim_fail(error, "%s: invalid velocities", sim_stage_name(stage));
-}
-
-static bool check_move(SimWorld *world, double moved, SimError *error) {
-  if (isfinite(moved)) return true;
-  float *const *x = world->particles.now.predicted;
-  int32_t i = 0;
-  while (i < world->particles.count - 1 && isfinite(x[0][i] + x[1][i] + x[2][i])) i++;
-  return sim_fail(error, "%s: particle %u has no finite position at %.6g s", sim_stage_name(SIM_STAGE_correct),
-                  world->particles.now.id[i], world->time);
-}
-
-// The density iterations. λ is never computed from stale neighbours: when the particles have used up the lists' margin,
-// the lists are built anew.
-static bool solve_density(SimWorld *world, SimStep *step, double *since, SimError *error) {
-  float margin = 0.5f * LIST_MARGIN * world->cubic.h;
-  double moved = 0;
-  for (int32_t k = 0; k < world->def.iterations; k++) {
-    if (moved > (double)margin) {
-      if (!find_neighbours(world, world->particles.now.predicted, SIM_STAGE_sort, SIM_STAGE_neighbours, since, error))
-        return false;
-      moved = 0;
-    }
-    sim_pbf_boundary(step);
-    lap(world, SIM_STAGE_boundary, since);
-    sim_pbf_density(step);
-    lap(world, SIM_STAGE_density, since);
-    double move = sim_pbf_correct(step);
-    lap(world, SIM_STAGE_correct, since);
-    if (!check_move(world, move, error)) return false;
-    moved += move;
-  }
-  return true;
-}
-
-static void commit(SimWorld *world, float dt) {
-  SimSorted *now = &world->particles.now;
-  for (int k = 0; k < 3; k++) {
-    float *position = now->position[k], *velocity = now->velocity[k];
-    now->position[k] = now->predicted[k];
-    now->predicted[k] = position;
-    now->velocity[k] = now->next_velocity[k];
-    now->next_velocity[k] = velocity;
-  }
-  world->settled = false;
-  world->time += (double)dt;
-  world->counts.substeps++;
-  world->profile.substeps++;
-}
-
-static bool substep(SimWorld *world, float dt, SimError *error) {
-  double since = sim_milliseconds();
-  SimStep step = make_step(world, dt);
-  world->settled = false;
-
-  sim_pbf_predict(&step);
-  if (!check(world, SIM_STAGE_predict, error)) return false;
-  lap(world, SIM_STAGE_predict, &since);
-
-  if (!find_neighbours(world, world->particles.now.predicted, SIM_STAGE_sort, SIM_STAGE_neighbours, &since, error))
-    return false;
-  world->profile.neighbour_pairs += world->neighbours.pairs;
-  if (!solve_density(world, &step, &since, error)) return false;
-
-  if (!check(world, SIM_STAGE_velocity, error)) return false;
-  lap(world, SIM_STAGE_velocity, &since);
-
-  sim_pbf_viscosity(&step);
-  lap(world, SIM_STAGE_viscosity, &since);
-
-  commit(world, dt);
-  return true;
-}
-
-// The longest substep allowed now: the CFL condition on the fastest particle (including what it will gain), the bound
-// from rest, the Def's time step.
+// The longest substep allowed now: the CFL condition on the fastest particle (including what it will gain), the
+// method's own bound, the Def's time step.
 static double longest_substep(const SimWorld *world) {
-  double spacing = (double)world->cubic.spacing, pull = (double)length3(world->gravity);
-  for (int32_t p = 0; p < world->push_count; p++) pull += (double)length3(world->pushes[p].acceleration);
-  double longest = pull > 0 ? sqrt((double)REST_MOVE * spacing / pull) : 1.0 / 60;
-  if (world->def.time_step > 0 && (double)world->def.time_step < longest) longest = (double)world->def.time_step;
-  double speed = (double)largest_speed(world, world->particles.now.velocity) + pull * longest;
+  double spacing = (double)world->cubic.spacing, pull = (double)sim_pull(world), longest = world->method->longest(world);
+  longest = fmin(longest, world->last_dt > 0 ? GROWTH * world->last_dt : FIRST * longest);
+  if (world->def.time_step > 0) longest = fmin(longest, (double)world->def.time_step);
+  double speed = (double)sim_largest_speed(world, world->particles.now.velocity) + pull * longest;
   double cfl = speed > 0 ? (double)world->def.cfl * spacing / speed : longest;
   return fmin(longest, cfl);
 }
@@ -309,7 +173,8 @@ bool sim_world_advance(SimWorld *world, double duration, SimError *error) {
   for (double rest = duration; rest > 0 && !world->failed;) {
     double substeps = ceil(rest / longest_substep(world) - 1e-6);
     double dt = substeps > 1 ? rest / substeps : rest;
-    world->failed = !substep(world, (float)dt, &world->failure);
+    world->failed = !world->method->substep(world, (float)dt, &world->failure);
+    world->last_dt = dt;
     rest = substeps > 1 ? rest - dt : 0;
   }
   world->push_count = 0;
@@ -323,17 +188,23 @@ bool sim_world_advance(SimWorld *world, double duration, SimError *error) {
   return !world->failed;
 }
 
+static void state_to_axes_kernel(int32_t begin, int32_t end, const void *context) {
+  const SimParticles *p = context;
+  float *axes[3];
+  sim_particles_second_as_axes(p, axes);
+  for (int k = 0; k < 3; k++) memcpy(axes[k] + begin, p->now.position[k] + begin, sizeof(float) * (size_t)(end - begin));
+}
+
 bool sim_world_settle(SimWorld *world, SimError *error) {
   if (world->settled) return true;
   double since = sim_milliseconds();
-  SimSorted *now = &world->particles.now;
-  for (int k = 0; k < 3 && world->particles.count > 0; k++)
-    memcpy(now->predicted[k], now->position[k], sizeof(float) * (size_t)world->particles.count);
-  if (!find_neighbours(world, now->position, SIM_STAGE_frame, SIM_STAGE_frame, &since, error)) return false;
-  SimStep step = make_step(world, 0);
-  sim_pbf_boundary(&step);
-  sim_pbf_density(&step);
-  lap(world, SIM_STAGE_frame, &since);
+  SimParticles *p = &world->particles;
+  sim_parallel_for(world->threads, p->count, state_to_axes_kernel, p);
+  if (!sim_step_neighbours(world, SIM_STAGE_frame, SIM_STAGE_frame, &since, error)) return false;
+  SimStep step = sim_step_make(world, 0);
+  step.measure = true;
+  sim_parallel_for(step.threads, p->count, step.wide->pbf_density, &step);
+  sim_step_lap(world, SIM_STAGE_frame, &since);
   world->settled = true;
   return true;
 }

@@ -3,7 +3,7 @@
 #ifndef LIDO_SIM_WORLD_H
 #define LIDO_SIM_WORLD_H
 
-#include "sim/solver_pbf.h"
+#include "sim/solver.h"
 
 #define SIM_DEF_COOKIE 0x4c69646fu
 
@@ -14,9 +14,13 @@ struct SimWorld {
   SimObstacle *obstacles;      ///< with their present poses
   SimBody *bodies;
   int32_t threads;
+  const SimWide *wide;
+  const SimMethod *method;
+  double last_dt;              ///< s, of the last substep; 0: none yet
 
   SimCubic cubic;
   SimBoundary boundary;
+  SimWallTable wall;
   SimParticles particles;
   float *colour;               ///< (capacity, 3) by id; only read where coloured is set
   bool coloured;               ///< some block brought a colour
@@ -51,6 +55,9 @@ int32_t sim_fill_block(SimWorld *world, const SimBlockDef *block, bool start, Si
 /// Sort by the present positions and compute grid, lists and density of the present state, if not done already. Every
 /// call of the interface leaves a world settled (unless it failed), so looking at it never changes what comes next.
 bool sim_world_settle(SimWorld *world, SimError *error);
+
+/// m/s²: the most that gravity and pushes together can accelerate a particle now.
+float sim_pull(const SimWorld *world);
 
 /// Largest speed at which the step still follows the water.
 void sim_world_raise_speed_limit(SimWorld *world);

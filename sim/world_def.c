@@ -20,11 +20,11 @@ SimWorldDef sim_default_world_def(void) {
                        .support = 2,
                        .gravity = {0, -9.81f, 0},
                        .time_step = 0,
-                       .cfl = 0.4f,
+                       .cfl = 0.8f,
                        .iterations = 4,
                        .viscosity = 0.01f,
                        .relaxation = 0.1f,
-                       .tensile = 0.003f,
+                       .tensile = 0,
                        .container = {{0, 0, 0}, {3, 1.6f, 1}, SIM_CONTAINER_BOX},
                        .kinematic_viscosity = 1e-6f,
                        .seed = 1};
@@ -110,7 +110,7 @@ static bool check_obstacle(const SimObstacle *obstacle, int32_t index, SimError 
 bool sim_def_check(const SimWorldDef *def, SimError *error) {
   char name[64];
   if (!def || def->cookie != SIM_DEF_COOKIE) return sim_fail(error, "the Def was not made by sim_default_world_def");
-  if (def->solver != SIM_SOLVER_PBF) return sim_fail(error, "unknown solver %d", (int)def->solver);
+  if (!sim_method(def->solver)) return sim_fail(error, "unknown solver %d", (int)def->solver);
   if (!check_numbers(def, error) || !check_container(def, error)) return false;
   if (def->block_count < 0 || def->block_count > MAX_OBJECTS || (def->block_count > 0 && !def->blocks))
     return sim_fail(error, "blocks: count must be in [0, %d], got %d", MAX_OBJECTS, def->block_count);

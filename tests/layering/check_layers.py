@@ -23,7 +23,7 @@ C_STANDARD = {
 }
 # What each layer may include besides the C standard library and its own headers.
 LAYERS = {
-    "sim": {"own": ("sim/",), "project": (), "system": (r"omp\.h",)},
+    "sim": {"own": ("sim/",), "project": (), "system": (r"omp\.h", r"[ei]mmintrin\.h")},
     "render": {"own": ("render/",), "project": ("sim/frame.h",), "system": (r"epoxy/gl\.h", r"cglm/.*")},
     "app": {"own": ("app/",), "project": ("sim/sim.h", "sim/frame.h", "render/render.h"),
             "system": (r"cjson/.*", r"GLFW/.*", r"EGL/.*", r"GL/osmesa\.h", r"spng\.h", r"sys/.*", r"unistd\.h",
@@ -37,6 +37,7 @@ ONLY_IN = [  # (system header, files that may include it)
     (r"GLFW/.*", r"app/context_glfw\.|app/window\.|app/window_"),
     (r"cjson/.*", r"app/"),
     (r"omp\.h", r"sim/parallel\."),
+    (r"[ei]mmintrin\.h", r"sim/wide/simd\.h"),
 ]
 EXCEPT = {
     ("app/context_osmesa.c", "osmesa_functions.h"): "the list of OpenGL functions, made by the build",

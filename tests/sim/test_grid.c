@@ -11,7 +11,7 @@ typedef struct Set {
 
 static Set make_set(int32_t count) {
   Set set = {count, {NULL, NULL, NULL}};
-  for (int k = 0; k < 3; k++) set.position[k] = calloc((size_t)count + 1, sizeof(float));
+  for (int k = 0; k < 3; k++) set.position[k] = calloc((size_t)count + SIM_CHUNK, sizeof(float));
   return set;
 }
 
@@ -56,26 +56,36 @@ static bool near(const Set *set, int32_t i, int32_t j, float radius) {
   return dx * dx + dy * dy + dz * dz < radius * radius;
 }
 
-static void check_set(const Set *set, float radius, int32_t threads) {
-  SimCellSort sort = {0};
-  SimNeighbours lists = {0};
-  Set sorted = sorted_set(set, &sort, radius, threads);
-  assert_int_equal(sim_neighbours_build(&lists, &sort.grid, sorted.position, set->count, radius, threads),
-                   SIM_NEIGHBOURS_OK);
+static void check_lists(const Set *sorted, const SimNeighbours *lists, float radius) {
   int64_t pairs = 0;
-  for (int32_t i = 0; i < set->count; i++) {
-    uint32_t at = lists.start[i];
-    for (int32_t j = 0; j < set->count; j++) {
-      if (j == i || !near(&sorted, i, j, radius)) continue;
-      assert_true(at < lists.end[i]);
-      assert_int_equal(lists.index[at++], j);
+  for (int32_t i = 0; i < sorted->count; i++) {
+    const uint32_t *lane = lists->index + (size_t)lists->start[i / SIM_CHUNK] * SIM_CHUNK + i % SIM_CHUNK;
+    uint32_t at = 0, length = lists->length[i / SIM_CHUNK];
+    for (int32_t j = 0; j < sorted->count; j++) {
+      if (j == i || !near(sorted, i, j, radius)) continue;
+      assert_true(at < length);
+      assert_int_equal(lane[SIM_CHUNK * at++], j);
       pairs++;
     }
-    assert_int_equal(at, lists.end[i]);
+    for (; at < length; at++) assert_int_equal(lane[SIM_CHUNK * at], sorted->count); // filled up
   }
-  assert_int_equal(pairs, lists.pairs);
+  assert_int_equal(pairs, lists->pairs);
+}
+
+static void check_set(const Set *set, float radius, int32_t threads) {
+  const char *const names[4] = {"avx512", "avx2", "sse2", "scalar"};
+  SimCellSort sort = {0};
+  Set sorted = sorted_set(set, &sort, radius, threads);
+  for (int k = 0; k < 4; k++) {
+    const SimWide *wide = sim_wide_named(names[k]);
+    if (!wide) continue;
+    SimNeighbours lists = {0};
+    assert_int_equal(sim_neighbours_build(&lists, wide, &sort.grid, sorted.position, set->count, radius, threads),
+                     SIM_NEIGHBOURS_OK);
+    check_lists(&sorted, &lists, radius);
+    sim_neighbours_free(&lists);
+  }
   free_set(&sorted);
-  sim_neighbours_free(&lists);
   sim_grid_free(&sort);
 }
 
@@ -191,7 +201,7 @@ static void a_heap_is_refused(void **state) {
   SimGrid grid = {{0, 0, 0}, 1, {1, 1, 1}, (const int32_t[]){0, 2000000}};
   Set empty = make_set(0);
   SimNeighbours lists = {0};
-  assert_int_equal(sim_neighbours_build(&lists, &grid, empty.position, 2000000, 1, 1), SIM_NEIGHBOURS_CROWDED);
+  assert_int_equal(sim_neighbours_build(&lists, sim_wide(), &grid, empty.position, 2000000, 1, 1), SIM_NEIGHBOURS_CROWDED);
   free_set(&empty);
 }
 

@@ -1,0 +1,72 @@
+// What solvers share: the context of a substep, the stages that every method is made of, and the table of methods.
+//
+// A method is one file (solver_NAME.c) with one const SimMethod, and one row in solver_table.c.
+#ifndef LIDO_SIM_SOLVER_H
+#define LIDO_SIM_SOLVER_H
+
+#include "sim/boundary.h"
+#include "sim/neighbours.h"
+#include "sim/particles.h"
+#include "sim/sim.h"
+#include "sim/wall_table.h"
+
+/// What travels through one substep.
+typedef struct SimStep {
+  const SimWide *wide;
+  int32_t threads;
+  float dt, inverse_dt;       ///< s, 1/s
+  SimCubic cubic;
+  float gravity[3];           ///< m/s²
+  int32_t push_count;
+  const SimPush *pushes;
+  const SimBoundary *boundary;
+  const SimWallTable *wall;
+  SimParticles *particles;
+  SimNeighbours *neighbours;
+  // Viscosity: v_i += Σ_j (share W_ij + diffusion |∇W_ij|/r) (v_j − v_i)
+  float viscosity_share;      ///< XSPH's c
+  float viscosity_diffusion;  ///< m², 2 ν dt
+  // Position based fluids
+  float omega;                ///< ω, damping of the Jacobi iteration
+  float relaxation;           ///< 1/m², ε
+  float tensile;              ///< m², k
+  float warm;                 ///< s², turns `pressure` into the first λ
+  bool stabilise;             ///< the corrections of this iteration move particles without changing their velocity
+  bool measure;               ///< only measure the present state: nothing is corrected
+} SimStep;
+
+typedef struct SimWorld SimWorld;
+
+/// A method: how a world gets from one state to the next. Wide kernels and stages are its words.
+typedef struct SimMethod {
+  const char *name;
+  /// One substep of dt > 0; on success the new state stands in `now` and *error is untouched.
+  bool (*substep)(SimWorld *world, float dt, SimError *error);
+  /// The longest substep that the method follows, s, apart from the CFL condition on the fastest particle.
+  double (*longest)(const SimWorld *world);
+} SimMethod;
+
+/// The method of a solver, NULL when there is none.
+const SimMethod *sim_method(SimSolver solver);
+
+// ---- Stages that methods share (step.c) -----------------------------------------------------------------------------
+
+/// The context of a substep of this length; what only one method reads is left 0.
+SimStep sim_step_make(SimWorld *world, float dt);
+
+/// v* = v + dt a, x* = x + dt v*, clamped; a is gravity and the pushes. x* stands in `second` as axes.
+void sim_step_predict(const SimStep *step);
+/// Sort by `second` as axes, build the lists, note which chunks are near what. Timed as the two stages.
+bool sim_step_neighbours(SimWorld *world, SimStage sort_stage, SimStage list_stage, double *since, SimError *error);
+/// XSPH and the viscosity of the liquid; reads the positions in `first`, changes next_velocity.
+void sim_step_viscosity(const SimStep *step);
+/// Whether next_velocity can be followed; otherwise *error names stage and particle.
+bool sim_step_check(SimWorld *world, SimStage stage, SimError *error);
+/// The positions in `first` and next_velocity become the state.
+void sim_step_commit(SimWorld *world, float dt);
+/// Add the time since *since to a stage.
+void sim_step_lap(SimWorld *world, SimStage stage, double *since);
+
+float sim_largest_speed(const SimWorld *world, float *const velocity[3]);
+
+#endif

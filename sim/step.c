@@ -1,0 +1,190 @@
+// The stages that every method is made of: see solver.h.
+#include <math.h>
+#include <string.h>
+
+#include "sim/parallel.h"
+#include "sim/world.h"
+
+void sim_step_lap(SimWorld *world, SimStage stage, double *since) {
+  double now = sim_milliseconds();
+  world->profile.milliseconds[stage] += now - *since;
+  *since = now;
+}
+
+SimStep sim_step_make(SimWorld *world, float dt) {
+  SimStep step = {.wide = world->wide,
+                  .threads = world->threads,
+                  .dt = dt,
+                  .inverse_dt = dt > 0 ? 1 / dt : 0,
+                  .cubic = world->cubic,
+                  .push_count = world->push_count,
+                  .pushes = world->pushes,
+                  .boundary = &world->boundary,
+                  .wall = &world->wall,
+                  .particles = &world->particles,
+                  .neighbours = &world->neighbours,
+                  .viscosity_share = world->def.viscosity,
+                  .viscosity_diffusion = 2 * world->def.kinematic_viscosity * dt};
+  memcpy(step.gravity, world->gravity, sizeof step.gravity);
+  return step;
+}
+
+// ---- Predict ---------------------------------------------------------------------------------------------------------
+
+// A push is full on its ray and falls off smoothly (1 − smoothstep) to nothing at its radius.
+static void add_push(const SimPush *push, const float point[3], float acceleration[3]) {
+  float d[3], along = 0, distance2 = 0;
+  for (int k = 0; k < 3; k++) {
+    d[k] = point[k] - push->origin[k];
+    along += d[k] * push->direction[k];
+  }
+  for (int k = 0; k < 3; k++) distance2 += d[k] * d[k];
+  float t = (distance2 - along * along) / (push->radius * push->radius);
+  if (!(t < 1)) return;
+  t = t > 0 ? sqrtf(t) : 0;
+  float share = 1 - t * t * (3 - 2 * t);
+  for (int k = 0; k < 3; k++) acceleration[k] += share * push->acceleration[k];
+}
+
+static void predict_kernel(int32_t begin, int32_t end, const void *context) {
+  const SimStep *step = context;
+  SimSorted *now = &step->particles->now;
+  float *axes[3];
+  sim_particles_second_as_axes(step->particles, axes);
+  for (int32_t i = begin; i < end; i++) {
+    float from[3], to[3], acceleration[3] = {step->gravity[0], step->gravity[1], step->gravity[2]};
+    for (int k = 0; k < 3; k++) from[k] = now->position[k][i];
+    for (int32_t p = 0; p < step->push_count; p++) add_push(&step->pushes[p], from, acceleration);
+    for (int k = 0; k < 3; k++) {
+      float v = now->velocity[k][i] + step->dt * acceleration[k];
+      now->next_velocity[k][i] = v;
+      to[k] = from[k] + step->dt * v;
+    }
+    const float free[3] = {to[0], to[1], to[2]};
+    sim_boundary_clamp(step->boundary, from, to);
+    for (int k = 0; k < 3; k++) {
+      axes[k][i] = to[k];
+      if (to[k] != free[k]) now->next_velocity[k][i] += (to[k] - free[k]) * step->inverse_dt;
+    }
+  }
+}
+
+void sim_step_predict(const SimStep *step) {
+  sim_parallel_for(step->threads, step->particles->count, predict_kernel, step);
+}
+
+// ---- Neighbours ------------------------------------------------------------------------------------------------------
+
+static bool narrow_container(const SimBoundary *boundary) {
+  const SimContainer *box = &boundary->container;
+  bool narrow = box->shape != SIM_CONTAINER_BOX;
+  for (int k = 0; k < 3; k++) narrow = narrow || box->max[k] - box->min[k] < 2 * boundary->wall.reach;
+  return narrow;
+}
+
+// What is in reach of each chunk, also after the moves that lists survive.
+static void near_kernel(int32_t begin, int32_t end, const void *context) {
+  const SimStep *step = context;
+  const SimBoundary *boundary = step->boundary;
+  const SimContainer *box = &boundary->container;
+  float margin = 0.5f * step->cubic.h, reach = boundary->wall.reach + margin;
+  bool narrow = narrow_container(boundary);
+  for (int32_t first = begin; first < end; first += SIM_CHUNK) {
+    float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    for (int32_t i = first; i < end && i < first + SIM_CHUNK; i++)
+      for (int k = 0; k < 3; k++) {
+        float x = step->particles->first[4 * (size_t)i + k];
+        low[k] = x < low[k] ? x : low[k];
+        high[k] = x > high[k] ? x : high[k];
+      }
+    bool wall = false;
+    for (int k = 0; k < 3; k++) wall = wall || !(low[k] >= box->min[k] + reach && high[k] <= box->max[k] - reach);
+    bool body = (wall && narrow) || (boundary->body_count > 0 && sim_boundary_near_box(boundary, low, high, margin));
+    step->particles->near[first / SIM_CHUNK] = body ? SIM_NEAR_BODY : wall ? SIM_NEAR_WALL : 0;
+  }
+}
+
+bool sim_step_neighbours(SimWorld *world, SimStage sort_stage, SimStage list_stage, double *since, SimError *error) {
+  SimParticles *particles = &world->particles;
+  float radius = world->cubic.h, *axes[3];
+  if (!sim_particles_sort(particles, &world->sort, radius, world->threads)) return sim_fail(error, "out of memory");
+  SimStep step = sim_step_make(world, 0);
+  sim_parallel_for(world->threads, particles->count, near_kernel, &step);
+  sim_step_lap(world, sort_stage, since);
+  sim_particles_second_as_axes(particles, axes);
+  SimNeighbourResult result = sim_neighbours_build(&world->neighbours, world->wide, &world->sort.grid, axes,
+                                                   particles->count, radius, world->threads);
+  sim_step_lap(world, list_stage, since);
+  if (result == SIM_NEIGHBOURS_NO_MEMORY) return sim_fail(error, "out of memory");
+  if (result == SIM_NEIGHBOURS_CROWDED)
+    return sim_fail(error, "neighbours: the particles are crowded into one place, %lld pairs",
+                    (long long)world->neighbours.pairs);
+  return true;
+}
+
+// ---- Viscosity -------------------------------------------------------------------------------------------------------
+
+static void velocity_to_second_kernel(int32_t begin, int32_t end, const void *context) {
+  const SimParticles *p = context;
+  for (int32_t i = begin; i < end; i++)
+    for (int k = 0; k < 4; k++) p->second[4 * (size_t)i + k] = k < 3 ? p->now.next_velocity[k][i] : 0;
+}
+
+void sim_step_viscosity(const SimStep *step) {
+  SimParticles *p = step->particles;
+  if (!(step->viscosity_share > 0 || step->viscosity_diffusion > 0)) return;
+  sim_parallel_for(step->threads, p->count, velocity_to_second_kernel, p);
+  sim_particles_pad(p, p->second);
+  sim_parallel_for(step->threads, p->count, step->wide->viscosity, step);
+}
+
+// ---- Check and commit ------------------------------------------------------------------------------------------------
+
+static void speed_kernel(int32_t begin, int32_t end, const void *context, double *fastest) {
+  float *const *v = context;
+  for (int32_t i = begin; i < end; i++) {
+    float v2 = v[0][i] * v[0][i] + v[1][i] * v[1][i] + v[2][i] * v[2][i];
+    if (!((double)v2 <= fastest[0])) fastest[0] = isnan(v2) ? INFINITY : (double)v2;
+  }
+}
+
+float sim_largest_speed(const SimWorld *world, float *const velocity[3]) {
+  double fastest = 0;
+  sim_parallel_max(world->threads, world->particles.count, 1, speed_kernel, velocity, &fastest);
+  return (float)sqrt(fastest);
+}
+
+bool sim_step_check(SimWorld *world, SimStage stage, SimError *error) {
+  float *const *v = world->particles.now.next_velocity;
+  if (sim_largest_speed(world, v) <= world->speed_limit) return true;
+  for (int32_t i = 0; i < world->particles.count; i++) {
+    float speed = sqrtf(v[0][i] * v[0][i] + v[1][i] * v[1][i] + v[2][i] * v[2][i]);
+    if (speed <= world->speed_limit) continue;
+    if (!isfinite(speed))
+      return sim_fail(error, "%s: particle %u has no finite velocity at %.6g s", sim_stage_name(stage),
+                      world->particles.now.id[i], world->time);
+    return sim_fail(error, "%s: particle %u exploded to %.3g m/s (limit %.3g) at %.6g s", sim_stage_name(stage),
+                    world->particles.now.id[i], (double)speed, (double)world->speed_limit, world->time);
+  }
+  return sim_fail(error, "%s: invalid velocities", sim_stage_name(stage));
+}
+
+static void commit_kernel(int32_t begin, int32_t end, const void *context) {
+  const SimParticles *p = context;
+  for (int32_t i = begin; i < end; i++)
+    for (int k = 0; k < 3; k++) p->now.position[k][i] = p->first[4 * (size_t)i + k];
+}
+
+void sim_step_commit(SimWorld *world, float dt) {
+  SimSorted *now = &world->particles.now;
+  sim_parallel_for(world->threads, world->particles.count, commit_kernel, &world->particles);
+  for (int k = 0; k < 3; k++) {
+    float *velocity = now->velocity[k];
+    now->velocity[k] = now->next_velocity[k];
+    now->next_velocity[k] = velocity;
+  }
+  world->settled = false;
+  world->time += (double)dt;
+  world->counts.substeps++;
+  world->profile.substeps++;
+}

@@ -1,0 +1,16 @@
+// The kernels that table.c collects; every file in this folder defines some. See wide.h.
+#ifndef LIDO_SIM_WIDE_KERNELS_H
+#define LIDO_SIM_WIDE_KERNELS_H
+
+#include "sim/wide/simd.h"
+
+extern const SimWide WIDE(sim_wide);
+
+void WIDE(sim_list_block)(int32_t begin, int32_t end, const void *context);
+void WIDE(sim_pbf_inherit)(int32_t begin, int32_t end, const void *context);
+void WIDE(sim_pbf_prepare)(int32_t begin, int32_t end, const void *context);
+void WIDE(sim_pbf_density)(int32_t begin, int32_t end, const void *context);
+void WIDE(sim_pbf_correct)(int32_t begin, int32_t end, const void *context, double *partial);
+void WIDE(sim_viscosity)(int32_t begin, int32_t end, const void *context);
+
+#endif

@@ -1,0 +1,13 @@
+// The kernels of this instruction set.
+#include "sim/wide/kernels.h"
+#include "sim/wide/simd.h"
+
+const SimWide WIDE(sim_wide) = {
+    .name = SIM_ISA_NAME,
+    .list_block = WIDE(sim_list_block),
+    .pbf_inherit = WIDE(sim_pbf_inherit),
+    .pbf_prepare = WIDE(sim_pbf_prepare),
+    .pbf_density = WIDE(sim_pbf_density),
+    .pbf_correct = WIDE(sim_pbf_correct),
+    .viscosity = WIDE(sim_viscosity),
+};

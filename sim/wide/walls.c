@@ -1,0 +1,82 @@
+#include "sim/wide/walls.h"
+
+#include "sim/wide/kernels.h"
+
+// Free share and its derivative between the two walls of one axis, of which only the nearer one is in reach (see
+// SIM_NEAR_WALL).
+static inline SimF free_share(const SimStep *step, int axis, SimF x, SimF *slope) {
+  const SimWallTable *wall = step->wall;
+  SimF low = x - sim_f(step->boundary->container.min[axis]), high = sim_f(step->boundary->container.max[axis]) - x;
+  SimF s = sim_max(sim_min(low, high), sim_f(0));
+  SimF t = sim_min(s * sim_f(wall->inverse_step), sim_f(SIM_WALL_STEPS));
+  float place[SIM_LANES];
+  uint32_t entry[SIM_LANES];
+  sim_store(place, t);
+  for (int k = 0; k < SIM_LANES; k++) entry[k] = (uint32_t)(int32_t)place[k];
+  for (int k = 0; k < SIM_LANES; k++) place[k] = (float)(int32_t)entry[k];
+  SimF u = t - sim_load(place), e[4];
+  sim_gather4(wall->entry, entry, e);
+  SimF derivative = e[2] + u * e[3];
+  *slope = sim_select_less(low, high, sim_f(0) - derivative, derivative);
+  return sim_f(1) - (e[0] + u * e[1]);
+}
+
+static void box_solid(const SimStep *step, const SimF own[4], SimF solid[4]) {
+  SimF share[3], slope[3], zero = sim_f(0);
+  for (int k = 0; k < 3; k++) share[k] = free_share(step, k, own[k], &slope[k]);
+  solid[0] = zero - slope[0] * share[1] * share[2];
+  solid[1] = zero - share[0] * slope[1] * share[2];
+  solid[2] = zero - share[0] * share[1] * slope[2];
+  solid[3] = sim_f(1) - share[0] * share[1] * share[2];
+}
+
+static void bodies_solid(const SimStep *step, int32_t i, float *solid) {
+  for (int32_t k = i; k < i + SIM_LANES && k < step->particles->count; k++, solid += 4) {
+    SimSolid found;
+    sim_boundary_solid(step->boundary, step->particles->first + 4 * (size_t)k, &found);
+    for (int a = 0; a < 3; a++) solid[a] = found.gradient[a];
+    solid[3] = found.share;
+  }
+}
+
+void WIDE(sim_wall_solid)(const SimStep *step, int32_t i, const SimF own[4], SimF solid[4]) {
+  float *to = step->particles->solid + 4 * (size_t)i;
+  uint8_t near = step->particles->near[i / SIM_CHUNK];
+  for (int k = 0; k < 4; k++) solid[k] = sim_f(0);
+  if (near & SIM_NEAR_BODY) {
+    bodies_solid(step, i, to);
+    sim_load4(to, solid);
+  } else if (near & SIM_NEAR_WALL) {
+    box_solid(step, own, solid);
+    sim_store4(to, solid[0], solid[1], solid[2], solid[3]);
+  }
+}
+
+static void clamp_to_bodies(const SimStep *step, int32_t i, SimF to[3]) {
+  const SimParticles *p = step->particles;
+  float lane[3][SIM_LANES];
+  for (int k = 0; k < 3; k++) sim_store(lane[k], to[k]);
+  for (int32_t k = 0; k < SIM_LANES && i + k < p->count; k++) {
+    float from[3], place[3];
+    for (int a = 0; a < 3; a++) from[a] = p->now.position[a][i + k], place[a] = lane[a][k];
+    sim_boundary_clamp(step->boundary, from, place);
+    for (int a = 0; a < 3; a++) lane[a][k] = place[a];
+  }
+  for (int k = 0; k < 3; k++) to[k] = sim_load(lane[k]);
+}
+
+void WIDE(sim_wall_clamp)(const SimStep *step, int32_t i, const SimF own[3], SimF move[3], SimF to[3]) {
+  const SimBoundary *b = step->boundary;
+  SimF free[3] = {to[0], to[1], to[2]};
+  // A NaN passes through and is caught by the world, not hidden: see sim_max and sim_min.
+  if (step->particles->near[i / SIM_CHUNK] & SIM_NEAR_BODY)
+    clamp_to_bodies(step, i, to);
+  else
+    for (int k = 0; k < 3; k++)
+      to[k] = sim_max(sim_f(b->container.min[k] + b->clearance),
+                      sim_min(sim_f(b->container.max[k] - b->clearance), to[k]));
+  for (int k = 0; k < 3; k++) {
+    SimF left = to[k] - own[k];
+    move[k] = sim_select_less(to[k], free[k], left, sim_select_less(free[k], to[k], left, move[k]));
+  }
+}
