@@ -36,7 +36,7 @@ static void predict_kernel(int32_t begin, int32_t end, const void *context) {
       to[k] = from[k] + step->dt * v;
     }
     const float free[3] = {to[0], to[1], to[2]};
-    sim_boundary_clamp(step->boundary, from, to);
+    sim_boundary_clamp(step->boundary, NULL, from, to);
     for (int k = 0; k < 3; k++) {
       now->predicted[k][i] = to[k];
       if (to[k] != free[k]) now->next_velocity[k][i] += (to[k] - free[k]) * step->inverse_dt;
@@ -91,7 +91,7 @@ static void boundary_kernel(int32_t begin, int32_t end, const void *context) {
   for (int32_t i = begin; i < end; i++) {
     float point[3] = {p->now.predicted[0][i], p->now.predicted[1][i], p->now.predicted[2][i]};
     SimSolid solid;
-    sim_boundary_solid(step->boundary, point, &solid);
+    sim_boundary_solid(step->boundary, NULL, point, &solid);
     p->solid[i] = solid.share;
     for (int k = 0; k < 3; k++) p->solid_gradient[k][i] = solid.gradient[k];
   }
@@ -214,7 +214,7 @@ static void correct_kernel(int32_t begin, int32_t end, const void *context, doub
       from[k] = p->now.position[k][i];
       to[k] = free[k] = p->now.predicted[k][i] + move[k];
     }
-    sim_boundary_clamp(step->boundary, from, to);
+    sim_boundary_clamp(step->boundary, NULL, from, to);
     for (int k = 0; k < 3; k++) {
       if (to[k] != free[k]) move[k] = to[k] - p->now.predicted[k][i];
       p->now.next_velocity[k][i] += move[k] * step->inverse_dt;
