@@ -27,7 +27,7 @@ typedef struct Faces {
 static void glass_axis(const SimContainer *container, float axis[2], float *radius) {
   axis[0] = 0.5f * (container->min[0] + container->max[0]);
   axis[1] = 0.5f * (container->min[2] + container->max[2]);
-  *radius = 0.5f * fminf(container->max[0] - container->min[0], container->max[2] - container->min[2]);
+  *radius = 0.5f * sim_min(container->max[0] - container->min[0], container->max[2] - container->min[2]);
 }
 
 static void face_pair(const SimBoundary *boundary, Faces *faces, int k, float x) {
@@ -94,7 +94,7 @@ static bool near_container(const SimBoundary *boundary, const float low[3], cons
   if (!glass) return false;
   float axis[2], radius;
   glass_axis(c, axis, &radius);
-  float x = fmaxf(axis[0] - low[0], high[0] - axis[0]), z = fmaxf(axis[1] - low[2], high[2] - axis[1]);
+  float x = sim_max(axis[0] - low[0], high[0] - axis[0]), z = sim_max(axis[1] - low[2], high[2] - axis[1]);
   reach += 0.5f * boundary->wall.spread / radius;
   return !(reach < radius && x * x + z * z <= (radius - reach) * (radius - reach));
 }
@@ -113,7 +113,7 @@ void sim_boundary_into_container(const SimBoundary *boundary, float clearance, f
   if (!glass) return;
   float axis[2], radius;
   glass_axis(c, axis, &radius);
-  float x = point[0] - axis[0], z = point[2] - axis[1], most = fmaxf(0, radius - clearance), r2 = x * x + z * z;
+  float x = point[0] - axis[0], z = point[2] - axis[1], most = sim_max(0, radius - clearance), r2 = x * x + z * z;
   if (!(r2 > most * most)) return;
   float scale = most / sqrtf(r2);
   point[0] = axis[0] + scale * x;
@@ -152,13 +152,13 @@ static void reach_through(const SimBoundary *boundary, const SimBody *body, Weig
   if (c->shape == SIM_CONTAINER_GLASS) {
     float axis[2], radius, x = body->position[0], z = body->position[2];
     glass_axis(c, axis, &radius);
-    float corner = hypotf(fmaxf(axis[0] - low[0], high[0] - axis[0]), fmaxf(axis[1] - low[2], high[2] - axis[1]));
-    weight[0][1] = fminf(corner, hypotf(x - axis[0], z - axis[1]) + body->bound) - radius;
+    float corner = hypotf(sim_max(axis[0] - low[0], high[0] - axis[0]), sim_max(axis[1] - low[2], high[2] - axis[1]));
+    weight[0][1] = sim_min(corner, hypotf(x - axis[0], z - axis[1]) + body->bound) - radius;
     weight[0][0] = weight[2][0] = weight[2][1] = 0;
   }
   for (int k = 0; k < 3; k++)
     for (int side = 0; side < 2; side++)
-      weight[k][side] = fminf(fmaxf(weight[k][side] / boundary->wall.spacing, 0), 1);
+      weight[k][side] = sim_min(sim_max(weight[k][side] / boundary->wall.spacing, 0), 1);
 }
 
 static void add_velocity(const SimBody *body, const float point[3], float share, SimSolid *solid) {
@@ -272,7 +272,7 @@ static void select_bodies(const SimBoundary *boundary, const float low[3], const
     swept_ball(&boundary->bodies[b], centre, &r);
     r += reach;
     for (int k = 0; k < 3; k++) {
-      float outside = fmaxf(0, fmaxf(low[k] - centre[k], centre[k] - high[k]));
+      float outside = sim_max(0, sim_max(low[k] - centre[k], centre[k] - high[k]));
       d2 += outside * outside;
     }
     if (!(d2 <= r * r)) continue;
@@ -286,13 +286,13 @@ static void select_bodies(const SimBoundary *boundary, const float low[3], const
 
 bool sim_boundary_select(const SimBoundary *boundary, const float low[3], const float high[3], float margin,
                          SimNear *near) {
-  float reach = fmaxf(boundary->wall.reach, boundary->clearance + margin), push = 0;
+  float reach = sim_max(boundary->wall.reach, boundary->clearance + margin), push = 0;
   near->container = near_container(boundary, low, high, reach);
+  reach += 2 * boundary->clearance; // what one body pushes away may come to another one
   select_bodies(boundary, low, high, reach, near);
   for (int32_t n = 0; n < near->count; n++)
-    push = fmaxf(push, farthest_move(&boundary->bodies[near->body[n]]) + 2 * boundary->clearance);
-  // What they push may come to others.
-  if (push > 0 && boundary->body_count > near->count) select_bodies(boundary, low, high, reach + push, near);
+    push = sim_max(push, farthest_move(&boundary->bodies[near->body[n]]));
+  if (push > 0) select_bodies(boundary, low, high, reach + push, near);
   return near->container || near->count != 0;
 }
 

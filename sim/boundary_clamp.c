@@ -114,7 +114,7 @@ static bool first_touch(const SimBoundary *boundary, const SimBody *body, const 
   float least_step = LEAST_STEP * boundary->clearance;
   if (!body->mesh) return trace(body, path, touch, least_step, t, normal);
   if (!sim_mesh_tree_hit(&body->mesh->tree, path->from, path->to, t, normal)) return false;
-  *t = fmaxf(0, *t - touch / path->length);
+  *t = sim_max(0, *t - touch / path->length);
   return true;
 }
 

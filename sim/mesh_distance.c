@@ -1,8 +1,10 @@
 // A mesh on a grid.
 //
-// Distance: from the triangles at every node (mesh_tree.h), looked up trilinearly. Near the surface, where edges and sheets
-// thinner than a cell would be lost between nodes, the tree is asked instead, so a mesh never leaks, however coarse the
-// grid had to become.
+// Distance: from the triangles at every node near the surface (mesh_tree.h), looked up trilinearly. Close to the surface,
+// where edges and sheets thinner than a cell would be lost between nodes, the tree is asked instead, so a mesh never leaks,
+// however coarse the grid had to become. Far from it, where the share has come to 0 or 1, nodes hold a bound: walking along
+// a row, a distance D says that the next nodes are at least D − cell, D − 2 cells … away, so none of them is asked until
+// the bound comes down to the band.
 //
 // Share of the density sum: the convolution of the solid with the kernel, as in Koschier and Bender, Density Maps for
 // Improved SPH Boundary Handling, 2017. The kernel nearly factors (wall.h), so it is done along one axis after the other:
@@ -65,13 +67,18 @@ static void distance_kernel(int32_t begin, int32_t end, const void *context) {
   const SimMeshDistance *field = context;
   for (int32_t z = begin; z < end; z++) {
     int32_t hint = 0;
+    float last = 0;
     for (int32_t y = 0; y < field->size[1]; y++)
       for (int32_t n = 0; n < field->size[0]; n++) {
         // There and back again, so that the next node is always beside the last one.
         int32_t x = y % 2 ? field->size[0] - 1 - n : n;
-        float point[3], normal[3];
-        node_position(field, x, y, z, point);
-        field->distance[node_index(field, x, y, z)] = sim_mesh_tree_distance(&field->tree, point, &hint, normal);
+        float point[3], normal[3], bound = fabsf(last) - 1.0001f * field->cell;
+        if (bound > field->band) last = copysignf(bound, last);
+        else {
+          node_position(field, x, y, z, point);
+          last = sim_mesh_tree_distance(&field->tree, point, &hint, normal);
+        }
+        field->distance[node_index(field, x, y, z)] = last;
       }
   }
 }
@@ -138,7 +145,7 @@ static void convolution_weights(Convolution *c, const SimWall *wall, float cell)
   float slope, slab[TAPS + 2], sum = 0;
   for (int32_t n = 0; n <= TAPS + 1; n++) slab[n] = sim_wall_slab(wall, (float)n * cell, cell / 2, &slope);
   for (int32_t n = 0; n <= TAPS; n++) {
-    c->weight[n] = fmaxf(0, slab[n] - (slab[n + 1] - 2 * slab[n] + slab[n > 0 ? n - 1 : 1]) / 6);
+    c->weight[n] = sim_max(0, slab[n] - (slab[n + 1] - 2 * slab[n] + slab[n > 0 ? n - 1 : 1]) / 6);
     sum += n > 0 ? 2 * c->weight[n] : c->weight[n];
     if (c->weight[n] > 0) c->taps = n;
   }
@@ -176,7 +183,7 @@ static float farthest_corner(const SimMesh *mesh) {
   float most = 0;
   for (int32_t n = 0; n < 3 * mesh->triangle_count; n++) {
     const float *v = mesh->vertex + 3 * mesh->triangle[n];
-    most = fmaxf(most, v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+    most = sim_max(most, v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
   }
   return sqrtf(most) * 1.00001f;
 }
@@ -186,6 +193,7 @@ static bool make(SimMeshDistance *field, const SimMesh *mesh, const SimWall *wal
   for (int k = 0; k < 3; k++) field->low[k] = field->tree.box[0][k], field->high[k] = field->tree.box[0][3 + k];
   field->bound = farthest_corner(&field->mesh);
   choose_grid(field, wall);
+  field->band = wall->reach + 4 * field->cell;
   field->distance = sim_allocate(node_count(field) * sizeof *field->distance);
   field->share = sim_allocate(node_count(field) * sizeof *field->share);
   if (!field->distance || !field->share) return false;
@@ -243,7 +251,7 @@ static bool look_up(const SimMeshDistance *field, const float *values, const flo
 static float beyond_grid(const SimMeshDistance *field, const float point[3], float normal[3]) {
   float squared = 0;
   for (int k = 0; k < 3; k++) {
-    float nearest = fminf(fmaxf(point[k], field->low[k]), field->high[k]);
+    float nearest = sim_min(sim_max(point[k], field->low[k]), field->high[k]);
     normal[k] = point[k] - nearest;
     squared += normal[k] * normal[k];
   }
@@ -255,9 +263,11 @@ static float beyond_grid(const SimMeshDistance *field, const float point[3], flo
 float sim_mesh_distance(const SimMeshDistance *field, const float point[3], float normal[3]) {
   float value, g[3];
   if (!look_up(field, field->distance, point, &value, g)) return beyond_grid(field, point, normal);
-  float steepness = sqrtf(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
-  if (fabsf(value) >= SIM_MESH_EXACT * field->cell && steepness > 0.5f) {
-    for (int k = 0; k < 3; k++) normal[k] = g[k] / steepness;
+  float steepness = sqrtf(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]), sure = field->band - 2 * field->cell;
+  bool interpolated = fabsf(value) >= SIM_MESH_EXACT * field->cell && fabsf(value) <= sure && steepness > 0.5f;
+  // Far outside a bound will do; from deep inside only the true way out leads out.
+  if (interpolated || value > sure) {
+    for (int k = 0; k < 3; k++) normal[k] = steepness > 0 ? g[k] / steepness : k == 1;
     return value;
   }
   int32_t hint = 0;

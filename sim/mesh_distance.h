@@ -12,6 +12,7 @@ typedef struct SimMeshDistance {
   float bound;         ///< m, the farthest vertex from the origin
   float origin[3];     ///< m, of node (0, 0, 0)
   float cell, inverse_cell; ///< m, 1/m
+  float band;          ///< m: nearer to the surface, `distance` is exact, farther away a bound with the right sign
   int32_t size[3];     ///< nodes along x, y, z, x running fastest
   float *distance;     ///< m, signed, (size[2], size[1], size[0])
   float *share;        ///< of the density sum, the same shape
@@ -21,8 +22,9 @@ typedef struct SimMeshDistance {
 SimMeshDistance *sim_mesh_distance_create(const SimMesh *mesh, const SimWall *wall, int32_t threads);
 void sim_mesh_distance_destroy(SimMeshDistance *field); ///< NULL is allowed
 
-/// Signed distance in the mesh's own axes, m, and the unit normal. Exact nearer to the surface than SIM_MESH_EXACT cells,
-/// interpolated farther away, and beyond the grid the distance to the box around the mesh, which is never too large.
+/// Signed distance in the mesh's own axes, m, and the unit normal. Exact nearer to the surface than SIM_MESH_EXACT cells and
+/// deep inside; interpolated where the density sum sees the mesh; farther outside it is never too large, and the normal is
+/// only roughly right.
 #define SIM_MESH_EXACT 1.75f
 float sim_mesh_distance(const SimMeshDistance *field, const float point[3], float normal[3]);
 

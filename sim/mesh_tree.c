@@ -16,6 +16,7 @@
 
 #include "sim/memory.h"
 #include "sim/mesh_topology.h"
+#include "sim/wall.h"
 
 // Most triangles of a leaf.
 #define LEAF 4
@@ -45,10 +46,10 @@ static void morton_codes(const SimMesh *mesh, uint32_t *code) {
   float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
   for (int32_t n = 0; n < 3 * mesh->triangle_count; n++) // vertices that no triangle uses do not count
     for (int k = 0; k < 3; k++) {
-      low[k] = fminf(low[k], mesh->vertex[3 * mesh->triangle[n] + k]);
-      high[k] = fmaxf(high[k], mesh->vertex[3 * mesh->triangle[n] + k]);
+      low[k] = sim_min(low[k], mesh->vertex[3 * mesh->triangle[n] + k]);
+      high[k] = sim_max(high[k], mesh->vertex[3 * mesh->triangle[n] + k]);
     }
-  float size = fmaxf(fmaxf(high[0] - low[0], high[1] - low[1]), high[2] - low[2]);
+  float size = sim_max(sim_max(high[0] - low[0], high[1] - low[1]), high[2] - low[2]);
   for (int32_t t = 0; t < mesh->triangle_count; t++) {
     code[t] = 0;
     for (int k = 0; k < 3; k++) {
@@ -109,8 +110,8 @@ static void make_normals(SimMeshTree *tree, const SimMesh *mesh) {
 
 static void merge(float box[6], const float other[6]) {
   for (int k = 0; k < 3; k++) {
-    box[k] = fminf(box[k], other[k]);
-    box[3 + k] = fmaxf(box[3 + k], other[3 + k]);
+    box[k] = sim_min(box[k], other[k]);
+    box[3 + k] = sim_max(box[3 + k], other[3 + k]);
   }
 }
 
@@ -214,13 +215,14 @@ static void try_triangle(const SimMeshTree *tree, int32_t place, const double p[
     for (int k = 0; k < 3; k++) c[j][k] = (double)tree->corner[place][3 * j + k];
   for (int k = 0; k < 3; k++) ab[k] = c[1][k] - c[0][k], ac[k] = c[2][k] - c[0][k], ap[k] = p[k] - c[0][k];
   cross(ab, ac, n);
-  double area2 = dot(n, n);
+  double area2 = dot(n, n), above = dot(ap, n);
+  if (above * above > nearest->squared * area2) return; // its plane is too far away already
   cross(ap, ac, t);
   double v = dot(t, n);
   cross(ab, ap, t);
   double w = dot(t, n);
   if (v >= 0 && w >= 0 && v + w <= area2 && area2 > 0) {
-    double height = dot(ap, n) / area2, offset[3];
+    double height = above / area2, offset[3];
     for (int k = 0; k < 3; k++) offset[k] = height * n[k];
     keep_nearer(nearest, place, FACE, offset);
     return;
@@ -231,7 +233,7 @@ static void try_triangle(const SimMeshTree *tree, int32_t place, const double p[
 static float box_distance2(const float box[6], const float p[3]) {
   float sum = 0;
   for (int k = 0; k < 3; k++) {
-    float outside = fmaxf(0, fmaxf(box[k] - p[k], p[k] - box[3 + k]));
+    float outside = sim_max(0, sim_max(box[k] - p[k], p[k] - box[3 + k]));
     sum += outside * outside;
   }
   return sum;
@@ -291,8 +293,9 @@ static bool meets_box(const float box[6], const double from[3], const double inv
   double begin = 0, end = most;
   for (int k = 0; k < 3; k++) {
     double a = ((double)box[k] - slack - from[k]) * inverse[k], b = ((double)box[3 + k] + slack - from[k]) * inverse[k];
-    begin = fmax(begin, fmin(a, b));
-    end = fmin(end, fmax(a, b));
+    double enter = a < b ? a : b, leave = a < b ? b : a;
+    if (enter > begin) begin = enter;
+    if (leave < end) end = leave;
   }
   return begin <= end;
 }

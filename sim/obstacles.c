@@ -37,7 +37,7 @@ SimBody sim_body_make(const SimObstacle *obstacle, const SimMeshDistance *mesh) 
   memcpy(body.position, obstacle->position, sizeof body.position);
   for (int k = 0; k < size_count(body.shape); k++) body.half[k] = obstacle->size[k] / 2;
   body.bound = sqrtf(body.half[0] * body.half[0] + body.half[1] * body.half[1] + body.half[2] * body.half[2]);
-  if (body.shape == SIM_CAPSULE) body.bound = fmaxf(body.half[0], body.half[1]);
+  if (body.shape == SIM_CAPSULE) body.bound = sim_max(body.half[0], body.half[1]);
   if (mesh) body.bound = mesh->bound;
   memcpy(body.old_position, body.position, sizeof body.position);
   memcpy(body.old_rotation, body.rotation, sizeof body.rotation);
@@ -105,11 +105,11 @@ static float cylinder_distance(const SimBody *body, const float p[3], float norm
 
 // Half the length of a capsule's straight part.
 static float straight_half(const SimBody *body) {
-  return fmaxf(0, body->half[1] - body->half[0]);
+  return sim_max(0, body->half[1] - body->half[0]);
 }
 
 static float capsule_distance(const SimBody *body, const float p[3], float normal[3]) {
-  float straight = straight_half(body), on_axis = fminf(fmaxf(p[1], -straight), straight);
+  float straight = straight_half(body), on_axis = sim_min(sim_max(p[1], -straight), straight);
   const float from_axis[3] = {p[0], p[1] - on_axis, p[2]};
   float distance = sphere_distance(from_axis, body->half[0], normal);
   // On the axis the way up is none out of the straight part.
@@ -184,7 +184,7 @@ static float capsule_solid(const SimBody *body, const SimWall *wall, const float
   float end = 1 - sim_wall_share(wall, fabsf(p[1]) - straight, &end_slope);
   float share = sim_wall_share(wall, s + shift * (1 + end), &slope);
   for (int k = 0; k < 3; k++) g[k] = slope * normal[k];
-  g[1] -= slope * shift * copysignf(end_slope, p[1]);
+  g[1] -= slope * shift * (p[1] < 0 ? -end_slope : end_slope);
   return share;
 }
 
@@ -230,7 +230,7 @@ void sim_body_box(const SimBody *body, float low[3], float high[3]) {
   for (int k = 0; k < 3; k++) {
     float up = fabsf(r[3 * k + 1]), extent; // of the body's y axis along this one
     if (body->shape == SIM_SPHERE) extent = half[0];
-    else if (body->shape == SIM_CYLINDER) extent = up * half[1] + sqrtf(fmaxf(0, 1 - up * up)) * half[0];
+    else if (body->shape == SIM_CYLINDER) extent = up * half[1] + sqrtf(sim_max(0, 1 - up * up)) * half[0];
     else if (body->shape == SIM_CAPSULE) extent = up * straight_half(body) + half[0];
     else extent = fabsf(r[3 * k]) * half[0] + up * half[1] + fabsf(r[3 * k + 2]) * half[2];
     low[k] = body->position[k] + centre[k] - extent;

@@ -35,7 +35,7 @@ static int32_t whole_below(float value, int32_t most) {
 
 static float distance_to_box(const Profile *p, int32_t k, float x, float y, float normal[3]) {
   float front = (float)k * p->width - x, back = x - p->length, top = y - (float)(k + 1) * p->rise;
-  const float excess[3] = {fmaxf(front, back), fmaxf(top, -y), 0};
+  const float excess[3] = {sim_max(front, back), sim_max(top, -y), 0};
   float distance = sim_rounded_distance(excess, 2, normal);
   if (front > back) normal[0] = -normal[0];
   if (top < -y) normal[1] = -normal[1];

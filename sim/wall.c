@@ -45,8 +45,8 @@ void sim_wall_make(SimWall *wall, const SimCubic *cubic) {
   for (int k = 0; k <= SIM_WALL_STEPS + 1; k++) {
     double s = k * step, e = step / 2;
     wall->share[k] = (float)share_at(s, spacing, h, cubic->volume);
-    wall->slope[k] =
-        (float)((share_at(s + e, spacing, h, cubic->volume) - share_at(fabs(s - e), spacing, h, cubic->volume)) /
-                (s < e ? e : 2 * e));
+    double above = share_at(s + e, spacing, h, cubic->volume),
+           below = s < e ? 1 - share_at(e - s, spacing, h, cubic->volume) : share_at(s - e, spacing, h, cubic->volume);
+    wall->slope[k] = (float)((above - below) / (2 * e));
   }
 }

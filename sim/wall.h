@@ -11,14 +11,24 @@
 // For the same reason solids that share no volume add up: a box is a product of slabs, stairs are a sum of such boxes.
 //
 // A curved surface is f again, at a distance shifted by κ σ²/2, where κ is the sum of its principal curvatures (positive
-// where the solid is a ball) and σ² the kernel's second moment along one axis: to first order in κ the surface sinks
-// away by κ ρ²/4 at the distance ρ beside the point, and the kernel's weight in a plane, −f', has its mean ρ² at 2σ².
+// where the solid is a ball) and σ² the kernel's second moment along one axis: to first order in κ the surface sinks away
+// by κ ρ²/4 at the distance ρ beside the point, and the mean ρ² is 2σ². Against a lattice cut to a glass this is right to
+// 0.006 for a radius of 2.5 spacings and to 0.002 for 10; for one spacing it is off by up to 0.05 (test_shapes).
 #ifndef LIDO_SIM_WALL_H
 #define LIDO_SIM_WALL_H
 
 #include "sim/kernels.h"
 
 #define SIM_WALL_STEPS 512
+
+// Like fminf and fmaxf, but the compiler makes single instructions of them. A NaN as `a` gives `b`.
+static inline float sim_min(float a, float b) {
+  return a < b ? a : b;
+}
+
+static inline float sim_max(float a, float b) {
+  return a > b ? a : b;
+}
 
 typedef struct SimWall {
   float reach;        ///< m: f = 0 beyond
@@ -34,7 +44,7 @@ void sim_wall_make(SimWall *wall, const SimCubic *cubic);
 /// f(s) and its derivative.
 static inline float sim_wall_share(const SimWall *wall, float s, float *slope) {
   float t = (s < 0 ? -s : s) * wall->inverse_step;
-  if (t >= SIM_WALL_STEPS) {
+  if (!(t < SIM_WALL_STEPS)) { // also where it is a NaN, which the world names
     *slope = 0;
     return s < 0 ? 1 : 0;
   }
