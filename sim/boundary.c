@@ -1,13 +1,13 @@
-// Walls and obstacles in the density sum: see boundary.h. After the idea of Akinci et al., Versatile Rigid-Fluid Coupling
-// for Incompressible SPH, 2012 (Eq. 3–5: a boundary counts like fluid at rest), with the sum over the boundary in closed
-// form.
+// Walls and obstacles in the density sum: see boundary.h. After the idea of Akinci et al., Versatile Rigid-Fluid
+// Coupling for Incompressible SPH, 2012 (Eq. 3–5: a boundary counts like fluid at rest), with the sum over the boundary
+// in closed form.
 //
 // How shares are put together. F_k is the share of the container's faces across axis k, s_b that of body b.
 // - Faces at right angles: what is free is A = Π (1 − F_k), see wall.h.
-// - A body inside the container shares no volume with the walls, so shares add up: A − s is free. This is the corner where
-//   a box stands on the floor. A body that reaches through a face, a pillar sunk into the floor, is as good as
-//   independent of that face, as the faces are of each other: (1 − F) (1 − s) is free. How far it reaches through the face,
-//   in spacings, weighs between the two: w in [0, 1], and A − s Π (1 − w_k F_k) is free.
+// - A body inside the container shares no volume with the walls, so shares add up: A − s is free. This is the corner
+//   where a box stands on the floor. A body that reaches through a face, a pillar sunk into the floor, is as good as
+//   independent of that face, as the faces are of each other: (1 − F) (1 − s) is free. How far it reaches through the
+//   face, in spacings, weighs between the two: w in [0, 1], and A − s Π (1 − w_k F_k) is free.
 // - Several bodies: each leaves the same part of what the others leave free. Those that touch each other count a little
 //   less in the edge where they meet than they should, as if each reached into the other.
 #include "sim/boundary.h"
@@ -66,7 +66,9 @@ static void gradient_of(const SimBoundary *boundary, const Faces *faces, const f
 }
 
 /// One number for each face.
-typedef struct Weights { float w[3][2]; } Weights;
+typedef struct Weights {
+  float w[3][2];
+} Weights;
 
 // Π (1 − w F) over the axes, never negative, and its gradient.
 static float left_free(const SimBoundary *boundary, const Faces *faces, const Weights *weights, float gradient[3]) {
@@ -173,11 +175,11 @@ static void add_velocity(const SimBody *body, const float point[3], float share,
 // What is gathered on the way over the bodies.
 typedef struct Sum {
   Faces faces;
-  bool walls;           ///< the container is in reach, and faces are set
+  bool walls;                       ///< the container is in reach, and faces are set
   float walls_free, walls_slope[3]; ///< A and its gradient
-  float free, slope[3]; ///< what is free so far, and its gradient
-  float shares;         ///< Σ of all shares, to weigh velocity and friction by
-  float body_share;     ///< of solid->body
+  float free, slope[3];             ///< what is free so far, and its gradient
+  float shares;                     ///< Σ of all shares, to weigh velocity and friction by
+  float body_share;                 ///< of solid->body
 } Sum;
 
 // The part of what the walls leave free that the body leaves free, 1 − s Π (1 − w F)/A, and its gradient.
@@ -190,8 +192,8 @@ static float body_rest(const SimBoundary *boundary, const Sum *sum, const SimBod
   reach_through(boundary, body, &weights);
   float apart = left_free(boundary, &sum->faces, &weights, apart_slope), rest = 1 - share * apart / a;
   for (int k = 0; k < 3; k++)
-    gradient[k] = rest < 0 ? 0
-                           : -(g[k] * apart + share * apart_slope[k]) / a + share * apart * sum->walls_slope[k] / (a * a);
+    gradient[k] =
+        rest < 0 ? 0 : -(g[k] * apart + share * apart_slope[k]) / a + share * apart * sum->walls_slope[k] / (a * a);
   return rest < 0 ? 0 : rest;
 }
 
@@ -260,7 +262,8 @@ static float farthest_move(const SimBody *body) {
     d2 += (body->position[k] - body->old_position[k]) * (body->position[k] - body->old_position[k]);
   for (int k = 0; k < 9; k++)
     turned2 += (body->rotation[k] - body->old_rotation[k]) * (body->rotation[k] - body->old_rotation[k]);
-  // A turn by θ differs from none by 2 √2 sin(θ/2) in this norm, and moves a point at distance r by 2 r sin(θ/2) at most.
+  // A turn by θ differs from none by 2 √2 sin(θ/2) in this norm, and moves a point at distance r by 2 r sin(θ/2) at
+  // most.
   return sqrtf(d2) + sqrtf(0.5f * turned2) * body->bound;
 }
 
@@ -290,8 +293,7 @@ bool sim_boundary_select(const SimBoundary *boundary, const float low[3], const 
   near->container = near_container(boundary, low, high, reach);
   reach += 2 * boundary->clearance; // what one body pushes away may come to another one
   select_bodies(boundary, low, high, reach, near);
-  for (int32_t n = 0; n < near->count; n++)
-    push = sim_max(push, farthest_move(&boundary->bodies[near->body[n]]));
+  for (int32_t n = 0; n < near->count; n++) push = sim_max(push, farthest_move(&boundary->bodies[near->body[n]]));
   if (push > 0) select_bodies(boundary, low, high, reach + push, near);
   return near->container || near->count != 0;
 }

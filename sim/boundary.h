@@ -52,17 +52,17 @@ typedef struct SimNear {
   int32_t body[SIM_MAX_NEAR];  ///< (count), indices, growing
 } SimNear;
 
-/// Whether any wall or body may be in reach of a point of the box, by its share or by a move that stays within `margin` (m,
-/// at least 0) of the box, while the bodies move from their old poses to their new ones; and which.
+/// Whether any wall or body may be in reach of a point of the box, by its share or by a move that stays within `margin`
+/// (m, at least 0) of the box, while the bodies move from their old poses to their new ones; and which.
 bool sim_boundary_select(const SimBoundary *boundary, const float low[3], const float high[3], float margin,
                          SimNear *near);
 
 /// Share of the density sum and what goes with it, of the bodies in their new poses. `near` may be NULL.
 void sim_boundary_solid(const SimBoundary *boundary, const SimNear *near, const float point[3], SimSolid *solid);
 
-/// Correct a move from a valid place `from` (of the start of the substep, bodies in their old poses) to `to` (at its end):
-/// stop at obstacles, slide along them, keep clear of all walls. Where a body moved onto the particle, it is pushed
-/// ahead. Returns the floating body that had a say, −1: none. `near` may be NULL. A NaN stays a NaN.
+/// Correct a move from a valid place `from` (of the start of the substep, bodies in their old poses) to `to` (at its
+/// end): stop at obstacles, slide along them, keep clear of all walls. Where a body moved onto the particle, it is
+/// pushed ahead. Returns the floating body that had a say, −1: none. `near` may be NULL. A NaN stays a NaN.
 int32_t sim_boundary_clamp(const SimBoundary *boundary, const SimNear *near, const float from[3], float to[3]);
 
 /// Whether a particle may start here: inside the container, touching no wall or obstacle by more than a tenth of the

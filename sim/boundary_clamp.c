@@ -1,19 +1,19 @@
 // The clamp: where a particle that wants to go from one place to another ends, see boundary.h.
 //
 // 1. Into the container.
-// 2. Along the path. In a body's own axes a particle goes from where it is in the body's old pose to where it wants to be
-//    in the new one, in a straight line: then the body rests, and a fast particle and a fast paddle are the same thing. On
-//    this line sphere tracing (Hart, Sphere Tracing, 1996) steps by the distance to the body, so that nothing is jumped
-//    over; in a mesh the triangles themselves are asked. Where the line comes down to the body, what is left of it goes
-//    on along the surface.
+// 2. Along the path. In a body's own axes a particle goes from where it is in the body's old pose to where it wants to
+//    be in the new one, in a straight line: then the body rests, and a fast particle and a fast paddle are the same
+//    thing. On this line sphere tracing (Hart, Sphere Tracing, 1996) steps by the distance to the body, so that nothing
+//    is jumped over; in a mesh the triangles themselves are asked. Where the line comes down to the body, what is left
+//    of it goes on along the surface.
 // 3. Out of bodies and walls by turns, until `clearance` is kept from all of them.
-// 4. The place found must lie in no body, and the way to it must pass through none. Wedged between bodies and walls, where
-//    no place keeps the clearance from all, another one is taken, in this order: one that touches, where it was, where
-//    the body that came carries it. If all of them lie in a body (a paddle that presses against the wall), the container
-//    wins.
+// 4. The place found must lie in no body, and the way to it must pass through none. Wedged between bodies and walls,
+//    where no place keeps the clearance from all, another one is taken, in this order: one that touches, where it was,
+//    where the body that came carries it. If all of them lie in a body (a paddle that presses against the wall), the
+//    container wins.
 //
-// Nothing is searched for unless the end of the path is nearer to a body than the path is long, or than the clearance: for
-// most particles one distance a body is all.
+// Nothing is searched for unless the end of the path is nearer to a body than the path is long, or than the clearance:
+// for most particles one distance a body is all.
 #include <math.h>
 #include <string.h>
 
@@ -31,8 +31,8 @@
 typedef struct Move {
   const SimBoundary *boundary;
   const SimNear *near;
-  const float *from;    ///< m, where the particle was
-  int32_t floating;     ///< the floating body that had a say, −1: none
+  const float *from; ///< m, where the particle was
+  int32_t floating;  ///< the floating body that had a say, −1: none
 } Move;
 
 // A straight way in the axes of a body.
@@ -178,8 +178,8 @@ static void settle(Move *move, float clearance, float point[3]) {
     sim_boundary_into_container(move->boundary, clearance, point);
 }
 
-// Whether a place lies in no body, and the way there passes through none. A particle that was in a body already may leave
-// it anywhere.
+// Whether a place lies in no body, and the way there passes through none. A particle that was in a body already may
+// leave it anywhere.
 static bool acceptable(const Move *move, const float point[3]) {
   for (int32_t n = 0; n < list_length(move); n++) {
     const SimBody *body = &move->boundary->bodies[listed(move, n)];

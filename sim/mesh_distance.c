@@ -1,20 +1,20 @@
 // A mesh on a grid.
 //
-// Distance: from the triangles at every node near the surface (mesh_tree.h), looked up trilinearly. Close to the surface,
-// where edges and sheets thinner than a cell would be lost between nodes, the tree is asked instead, so a mesh never leaks,
-// however coarse the grid had to become. Far from it, where the share has come to 0 or 1, nodes hold a bound: walking along
-// a row, a distance D says that the next nodes are at least D − cell, D − 2 cells … away, so none of them is asked until
-// the bound comes down to the band.
+// Distance: from the triangles at every node near the surface (mesh_tree.h), looked up trilinearly. Close to the
+// surface, where edges and sheets thinner than a cell would be lost between nodes, the tree is asked instead, so a mesh
+// never leaks, however coarse the grid had to become. Far from it, where the share has come to 0 or 1, nodes hold a
+// bound: walking along a row, a distance D says that the next nodes are at least D − cell, D − 2 cells … away, so none
+// of them is asked until the bound comes down to the band.
 //
 // Share of the density sum: the convolution of the solid with the kernel, as in Koschier and Bender, Density Maps for
-// Improved SPH Boundary Handling, 2017. The kernel nearly factors (wall.h), so it is done along one axis after the other:
-// a node's cell that is filled to the part o adds o times a product of slabs, as sim_body_solid has it for a box. The part o
-// comes from the distances at the centres of the cell's eight parts, each a ramp as wide as the part. A sheet of no
-// thickness counts as an eighth of a cell.
+// Improved SPH Boundary Handling, 2017. The kernel nearly factors (wall.h), so it is done along one axis after the
+// other: a node's cell that is filled to the part o adds o times a product of slabs, as sim_body_solid has it for a
+// box. The part o comes from the distances at the centres of the cell's eight parts, each a ramp as wide as the part. A
+// sheet of no thickness counts as an eighth of a cell.
 //
-// Limits: a cell is a quarter of a spacing unless the grid would
-// have more than NODES nodes, at 8 bytes each; a mesh longer than about 35 spacings in all three directions gets coarser cells, and
-// features smaller than a cell then count in the mean only.
+// Limits: a cell is a quarter of a spacing unless the grid would have more than NODES nodes, at 8 bytes each; a mesh
+// longer than about 35 spacings in all three directions gets coarser cells, and features smaller than a cell then count
+// in the mean only.
 #include "sim/mesh_distance.h"
 
 #include <math.h>
@@ -59,7 +59,8 @@ static void choose_grid(SimMeshDistance *field, const SimWall *wall) {
   for (int k = 0; k < 3; k++) {
     double length = (double)field->high[k] - (double)field->low[k] + 2 * (double)wall->reach;
     field->size[k] = (int32_t)ceil(length / cell) + 5;
-    field->origin[k] = (float)(0.5 * ((double)field->low[k] + (double)field->high[k]) - 0.5 * cell * (field->size[k] - 1));
+    field->origin[k] =
+        (float)(0.5 * ((double)field->low[k] + (double)field->high[k]) - 0.5 * cell * (field->size[k] - 1));
   }
 }
 
@@ -73,7 +74,8 @@ static void distance_kernel(int32_t begin, int32_t end, const void *context) {
         // There and back again, so that the next node is always beside the last one.
         int32_t x = y % 2 ? field->size[0] - 1 - n : n;
         float point[3], normal[3], bound = fabsf(last) - 1.0001f * field->cell;
-        if (bound > field->band) last = copysignf(bound, last);
+        if (bound > field->band)
+          last = copysignf(bound, last);
         else {
           node_position(field, x, y, z, point);
           last = sim_mesh_tree_distance(&field->tree, point, &hint, normal);
@@ -113,8 +115,8 @@ typedef struct Convolution {
   const float *from;
   float *to;
   int axis;
-  int32_t taps;             ///< on one side
-  float weight[TAPS + 1];   ///< of the cells 0, ±1, ±2 …
+  int32_t taps;           ///< on one side
+  float weight[TAPS + 1]; ///< of the cells 0, ±1, ±2 …
 } Convolution;
 
 // Beyond the grid there is nothing solid: it reaches farther than the kernel.
@@ -138,9 +140,9 @@ static void convolve_kernel(int32_t begin, int32_t end, const void *context) {
       }
 }
 
-// Slabs as thick as a cell, n cells away. Cells filled in part, the same all over, and the interpolation between nodes blur
-// the share, on the average by as much as a variance of (1 + 1 + 2)/12 cells² along each axis; so much less is the kernel's,
-// w − δ²w/6. The weights still add up to one.
+// Slabs as thick as a cell, n cells away. Cells filled in part, the same all over, and the interpolation between nodes
+// blur the share, on the average by as much as a variance of (1 + 1 + 2)/12 cells² along each axis; so much less is the
+// kernel's, w − δ²w/6. The weights still add up to one.
 static void convolution_weights(Convolution *c, const SimWall *wall, float cell) {
   float slope, slab[TAPS + 2], sum = 0;
   for (int32_t n = 0; n <= TAPS + 1; n++) slab[n] = sim_wall_slab(wall, (float)n * cell, cell / 2, &slope);

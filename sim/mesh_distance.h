@@ -22,9 +22,9 @@ typedef struct SimMeshDistance {
 SimMeshDistance *sim_mesh_distance_create(const SimMesh *mesh, const SimWall *wall, int32_t threads);
 void sim_mesh_distance_destroy(SimMeshDistance *field); ///< NULL is allowed
 
-/// Signed distance in the mesh's own axes, m, and the unit normal. Exact nearer to the surface than SIM_MESH_EXACT cells and
-/// deep inside; interpolated where the density sum sees the mesh; farther outside it is never too large, and the normal is
-/// only roughly right.
+/// Signed distance in the mesh's own axes, m, and the unit normal. Exact nearer to the surface than SIM_MESH_EXACT
+/// cells and deep inside; interpolated where the density sum sees the mesh; farther outside it is never too large, and
+/// the normal is only roughly right.
 #define SIM_MESH_EXACT 1.75f
 float sim_mesh_distance(const SimMeshDistance *field, const float point[3], float normal[3]);
 

@@ -78,7 +78,8 @@ SimMeshFault sim_mesh_neighbours(const SimMesh *mesh, int32_t *neighbour, int32_
 }
 
 double sim_mesh_volume(const SimMesh *mesh) {
-  const float *o = mesh->vertex; // of tetrahedra with the first vertex, so that a place far from the origin costs no digits
+  const float *o =
+      mesh->vertex; // of tetrahedra with the first vertex, so that a place far from the origin costs no digits
   double sum = 0;
   for (int32_t t = 0; t < mesh->triangle_count; t++) {
     double e[3][3];
@@ -100,8 +101,8 @@ static bool check_arrays(const SimMesh *mesh, const char *name, SimError *error)
   for (int32_t v = 0; v < mesh->vertex_count; v++)
     for (int k = 0; k < 3; k++)
       if (!(fabsf(mesh->vertex[3 * v + k]) <= MAX_COORDINATE))
-        return sim_fail(error, "%s: mesh vertex %d: coordinates must be finite and at most %g m in size, got %g", name, v,
-                        (double)MAX_COORDINATE, (double)mesh->vertex[3 * v + k]);
+        return sim_fail(error, "%s: mesh vertex %d: coordinates must be finite and at most %g m in size, got %g", name,
+                        v, (double)MAX_COORDINATE, (double)mesh->vertex[3 * v + k]);
   for (int32_t t = 0; t < mesh->triangle_count; t++) {
     const int32_t *corner = mesh->triangle + 3 * t;
     for (int j = 0; j < 3; j++)
@@ -125,17 +126,21 @@ bool sim_mesh_check(const SimMesh *mesh, const char *name, SimError *error) {
     return sim_fail(error, "%s: mesh is not closed: only one triangle at the edge of vertices %d and %d", name, edge[0],
                     edge[1]);
   case SIM_MESH_BRANCHES:
-    return sim_fail(error, "%s: mesh is not the surface of a solid: more than two triangles at the edge of vertices %d "
-                    "and %d", name, edge[0], edge[1]);
+    return sim_fail(error,
+                    "%s: mesh is not the surface of a solid: more than two triangles at the edge of vertices %d "
+                    "and %d",
+                    name, edge[0], edge[1]);
   case SIM_MESH_TWISTED:
-    return sim_fail(error, "%s: mesh triangles at the edge of vertices %d and %d turn in opposite senses", name, edge[0],
-                    edge[1]);
+    return sim_fail(error, "%s: mesh triangles at the edge of vertices %d and %d turn in opposite senses", name,
+                    edge[0], edge[1]);
   case SIM_MESH_NO_MEMORY:
     return sim_fail(error, "out of memory");
   }
   double volume = sim_mesh_volume(mesh);
   if (!(volume > 0))
-    return sim_fail(error, "%s: mesh must enclose a volume, its triangles turning counter-clockwise seen from outside; "
-                    "its volume is %g m³", name, volume);
+    return sim_fail(error,
+                    "%s: mesh must enclose a volume, its triangles turning counter-clockwise seen from outside; "
+                    "its volume is %g m³",
+                    name, volume);
   return true;
 }

@@ -1,14 +1,14 @@
 // Distances and paths to a closed triangle mesh.
 //
 // The triangles are sorted along a Morton curve (Morton, A Computer Oriented Geodetic Data Base, 1966) through their
-// centres, and a complete binary tree of boxes is put over them, in the manner of Lauterbach et al., Fast BVH Construction
-// on GPUs, 2009, but with its cuts in the middle of the sorted row: then it needs no pointers.
+// centres, and a complete binary tree of boxes is put over them, in the manner of Lauterbach et al., Fast BVH
+// Construction on GPUs, 2009, but with its cuts in the middle of the sorted row: then it needs no pointers.
 //
-// Sign: Bærentzen and Aanæs, Signed Distance Computation Using the Angle Weighted Pseudonormal, 2005. The nearest surface
-// point lies on a face, an edge or a vertex. The point is inside where its offset from there points against the normal of
-// that feature: the triangle's, the sum of the two at the edge, the sum weighted by angles around the vertex. This is
-// exact for a closed mesh that does not cut itself. Where two parts of a mesh overlap, the nearer sheet decides, so the
-// walls inside the other part count as walls.
+// Sign: Bærentzen and Aanæs, Signed Distance Computation Using the Angle Weighted Pseudonormal, 2005. The nearest
+// surface point lies on a face, an edge or a vertex. The point is inside where its offset from there points against the
+// normal of that feature: the triangle's, the sum of the two at the edge, the sum weighted by angles around the vertex.
+// This is exact for a closed mesh that does not cut itself. Where two parts of a mesh overlap, the nearer sheet
+// decides, so the walls inside the other part count as walls.
 #include "sim/mesh_tree.h"
 
 #include <math.h>
@@ -187,9 +187,9 @@ enum { EDGE = 3, FACE = 6 };
 
 typedef struct Nearest {
   double squared;
-  int32_t place;      ///< in order
+  int32_t place; ///< in order
   int part;
-  double offset[3];   ///< m, from the nearest point to the query
+  double offset[3]; ///< m, from the nearest point to the query
 } Nearest;
 
 static void keep_nearer(Nearest *nearest, int32_t place, int part, const double offset[3]) {
@@ -264,8 +264,10 @@ static void search(const SimMeshTree *tree, const float point[3], const double p
 static void pseudonormal(const SimMeshTree *tree, const Nearest *nearest, double normal[3]) {
   int32_t t = tree->order[nearest->place];
   const float *n = tree->normal[t], *other = NULL;
-  if (nearest->part < EDGE) n = tree->vertex_normal[tree->triangle[3 * t + nearest->part]];
-  else if (nearest->part < FACE) other = tree->normal[tree->neighbour[3 * t + nearest->part - EDGE]];
+  if (nearest->part < EDGE)
+    n = tree->vertex_normal[tree->triangle[3 * t + nearest->part]];
+  else if (nearest->part < FACE)
+    other = tree->normal[tree->neighbour[3 * t + nearest->part - EDGE]];
   for (int k = 0; k < 3; k++) normal[k] = (double)n[k] + (other ? (double)other[k] : 0);
 }
 

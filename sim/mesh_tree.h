@@ -24,8 +24,8 @@ void sim_mesh_tree_free(SimMeshTree *tree);
 /// `order` to begin with (any; a near one is faster) and becomes that of the nearest triangle.
 float sim_mesh_tree_distance(const SimMeshTree *tree, const float point[3], int32_t *hint, float normal[3]);
 
-/// Whether the segment passes a triangle from outside to inside. The first one that it meets is at from + *t (to − from),
-/// with the unit normal given.
+/// Whether the segment passes a triangle from outside to inside. The first one that it meets is at from + *t (to −
+/// from), with the unit normal given.
 bool sim_mesh_tree_hit(const SimMeshTree *tree, const float from[3], const float to[3], float *t, float normal[3]);
 
 #endif

@@ -229,10 +229,14 @@ void sim_body_box(const SimBody *body, float low[3], float high[3]) {
   sim_to_world(r, middle, centre);
   for (int k = 0; k < 3; k++) {
     float up = fabsf(r[3 * k + 1]), extent; // of the body's y axis along this one
-    if (body->shape == SIM_SPHERE) extent = half[0];
-    else if (body->shape == SIM_CYLINDER) extent = up * half[1] + sqrtf(sim_max(0, 1 - up * up)) * half[0];
-    else if (body->shape == SIM_CAPSULE) extent = up * straight_half(body) + half[0];
-    else extent = fabsf(r[3 * k]) * half[0] + up * half[1] + fabsf(r[3 * k + 2]) * half[2];
+    if (body->shape == SIM_SPHERE)
+      extent = half[0];
+    else if (body->shape == SIM_CYLINDER)
+      extent = up * half[1] + sqrtf(sim_max(0, 1 - up * up)) * half[0];
+    else if (body->shape == SIM_CAPSULE)
+      extent = up * straight_half(body) + half[0];
+    else
+      extent = fabsf(r[3 * k]) * half[0] + up * half[1] + fabsf(r[3 * k + 2]) * half[2];
     low[k] = body->position[k] + centre[k] - extent;
     high[k] = body->position[k] + centre[k] + extent;
   }

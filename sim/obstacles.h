@@ -24,7 +24,8 @@ typedef struct SimBody {
   float old_position[3], old_rotation[9]; ///< the pose at the start of the substep; position and rotation are its end
 } SimBody;
 
-/// The body of an obstacle; its quaternion is normalised. For a mesh, `mesh` is what was made of obstacle->mesh, else NULL.
+/// The body of an obstacle; its quaternion is normalised. For a mesh, `mesh` is what was made of obstacle->mesh, else
+/// NULL.
 SimBody sim_body_make(const SimObstacle *obstacle, const SimMeshDistance *mesh);
 
 /// Signed distance of a point to the body's surface (negative inside), m, and the unit normal: the direction away from
@@ -34,7 +35,8 @@ float sim_body_distance(const SimBody *body, const float point[3], float normal[
 /// The same in the body's own axes.
 float sim_body_local_distance(const SimBody *body, const float point[3], float normal[3]);
 
-/// The share of the density sum that a lattice filling the body would give at a point, in [0, 1], and its gradient (1/m).
+/// The share of the density sum that a lattice filling the body would give at a point, in [0, 1], and its gradient
+/// (1/m).
 float sim_body_solid(const SimBody *body, const SimWall *wall, const float point[3], float gradient[3]);
 
 /// The axis-aligned box around the body, m.

@@ -1,17 +1,17 @@
 // Stairs: exact distance and share of the density sum.
 //
-// In the plane of the profile, with X and Y measured from the foot, step k = 0 … n − 1 is the column from k·w to (k + 1)·w
-// with the height (k + 1)·r. The solid is the union of the boxes B_k = [k·w, n·w] × [0, (k + 1)·r]; what lies before and
-// above it is the union of the quadrants Q_k = {X < k·w, Y > k·r}, k = 0 … n. So the distance from outside is the least
-// distance to a B_k, and the depth inside is the least distance to a Q_k, to the underside or to the back.
+// In the plane of the profile, with X and Y measured from the foot, step k = 0 … n − 1 is the column from k·w to (k +
+// 1)·w with the height (k + 1)·r. The solid is the union of the boxes B_k = [k·w, n·w] × [0, (k + 1)·r]; what lies
+// before and above it is the union of the quadrants Q_k = {X < k·w, Y > k·r}, k = 0 … n. So the distance from outside
+// is the least distance to a B_k, and the depth inside is the least distance to a Q_k, to the underside or to the back.
 //
-// The squared distance to B_k, max(k·w − X, 0)² + max(Y − (k + 1)·r, 0)², is convex in k, and so is that to Q_k. Over the
-// real numbers its minimum lies at (w X + r (Y − r))/(w² + r²), for Q_k at (w X + r Y)/(w² + r²); over the whole numbers
-// it lies beside it. Two candidates do, however many steps there are. Beyond the profile, the distance along z joins as
-// for every prism.
+// The squared distance to B_k, max(k·w − X, 0)² + max(Y − (k + 1)·r, 0)², is convex in k, and so is that to Q_k. Over
+// the real numbers its minimum lies at (w X + r (Y − r))/(w² + r²), for Q_k at (w X + r Y)/(w² + r²); over the whole
+// numbers it lies beside it. Two candidates do, however many steps there are. Beyond the profile, the distance along z
+// joins as for every prism.
 //
-// The share is the sum over the columns, which share no volume, each of them a product of slabs as for a box (wall.h). So
-// in an inner corner the water sees just what two walls at right angles give. Columns out of reach are left out.
+// The share is the sum over the columns, which share no volume, each of them a product of slabs as for a box (wall.h).
+// So in an inner corner the water sees just what two walls at right angles give. Columns out of reach are left out.
 #include "sim/stairs.h"
 
 #include <math.h>
@@ -19,7 +19,7 @@
 #include "sim/obstacles.h"
 
 typedef struct Profile {
-  float width, rise;   ///< m, of one step
+  float width, rise;    ///< m, of one step
   float length, height; ///< m, of the flight
   int32_t steps;
 } Profile;

@@ -5,15 +5,16 @@
 // lies at rest, it is exactly what is missing there, so water neither stacks on a wall nor shuns it. Akinci et al. 2012
 // get the same from particles on the wall; the sum in closed form needs none and leaves no bumps.
 //
-// For s < 0 (a point behind the surface) f(s) = 1 − f(−s): the lattice on both sides of the surface is whole.
-// The cubic spline is close to a Gaussian, so the parts along x, y and z nearly factor: what is free of two walls that
-// meet in an edge is (1 − f₁)(1 − f₂). In the lattice's edge this is right to 0.4 %, in its corner to 1 % (test_boundary).
-// For the same reason solids that share no volume add up: a box is a product of slabs, stairs are a sum of such boxes.
+// For s < 0 (a point behind the surface) f(s) = 1 − f(−s): the lattice on both sides of the surface is whole. The cubic
+// spline is close to a Gaussian, so the parts along x, y and z nearly factor: what is free of two walls that meet in an
+// edge is (1 − f₁)(1 − f₂). In the lattice's edge this is right to 0.4 %, in its corner to 1 % (test_boundary). For the
+// same reason solids that share no volume add up: a box is a product of slabs, stairs are a sum of such boxes.
 //
-// A curved surface is f again, at a distance shifted by κ σ²/2, where κ is the sum of its principal curvatures (positive
-// where the solid is a ball) and σ² the kernel's second moment along one axis: to first order in κ the surface sinks away
-// by κ ρ²/4 at the distance ρ beside the point, and the mean ρ² is 2σ². Against a lattice cut to a glass this is right to
-// 0.006 for a radius of 2.5 spacings and to 0.002 for 10; for one spacing it is off by up to 0.05 (test_shapes).
+// A curved surface is f again, at a distance shifted by κ σ²/2, where κ is the sum of its principal curvatures
+// (positive where the solid is a ball) and σ² the kernel's second moment along one axis: to first order in κ the
+// surface sinks away by κ ρ²/4 at the distance ρ beside the point, and the mean ρ² is 2σ². Against a lattice cut to a
+// glass this is right to 0.006 for a radius of 2.5 spacings and to 0.002 for 10; for one spacing it is off by up to
+// 0.05 (test_shapes).
 #ifndef LIDO_SIM_WALL_H
 #define LIDO_SIM_WALL_H
 

@@ -95,8 +95,8 @@ bool sim_block_check(const SimBlockDef *block, const char *name, SimError *error
 }
 
 static bool check_size(const SimObstacle *obstacle, const char *name, SimError *error) {
-  static const int sizes[SIM_SHAPE_COUNT] = {[SIM_BOX] = 3,     [SIM_SPHERE] = 1, [SIM_CYLINDER] = 2,
-                                             [SIM_CAPSULE] = 2, [SIM_STAIRS] = 3, [SIM_MESH] = 0};
+  static const int sizes[SIM_SHAPE_COUNT] = {
+      [SIM_BOX] = 3, [SIM_SPHERE] = 1, [SIM_CYLINDER] = 2, [SIM_CAPSULE] = 2, [SIM_STAIRS] = 3, [SIM_MESH] = 0};
   for (int k = 0; k < sizes[obstacle->shape]; k++)
     if (!(obstacle->size[k] > 0 && obstacle->size[k] <= 1e6f))
       return sim_fail(error, "%s: size must be in (0, 1e6] m, got %g", name, (double)obstacle->size[k]);

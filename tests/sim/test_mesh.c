@@ -76,15 +76,17 @@ static void an_edge_of_four_triangles_is_refused(void **state) {
   (void)state;
   // Two tetrahedra with a common edge.
   const float vertex[6][3] = {{0, 0, 0}, {0, 1, 0}, {1, 0, 0}, {1, 0, 1}, {-1, 0, 0}, {-1, 0, -1}};
-  const int32_t triangle[8][3] = {{0, 1, 2}, {0, 2, 3}, {1, 3, 2}, {0, 3, 1}, {0, 1, 4}, {0, 4, 5}, {1, 5, 4}, {0, 5, 1}};
+  const int32_t triangle[8][3] = {{0, 1, 2}, {0, 2, 3}, {1, 3, 2}, {0, 3, 1},
+                                  {0, 1, 4}, {0, 4, 5}, {1, 5, 4}, {0, 5, 1}};
   SimMesh mesh = {6, 8, vertex[0], triangle[0]};
   refused(&mesh, "more than two triangles at the edge of vertices 0 and 1");
 }
 
 static void volumes_are_those_of_solids(void **state) {
   (void)state;
-  TestMesh box = test_mesh_box((const float[3]){0.1f, 0.2f, 0.3f}), flight = test_mesh_stairs((const float[3]){1, 1, 1}, 4),
-           ball = test_mesh_ball(1, 4), four = test_mesh_tetrahedron(0.5f);
+  TestMesh box = test_mesh_box((const float[3]){0.1f, 0.2f, 0.3f}),
+           flight = test_mesh_stairs((const float[3]){1, 1, 1}, 4), ball = test_mesh_ball(1, 4),
+           four = test_mesh_tetrahedron(0.5f);
   assert_true(fabs(sim_mesh_volume(&box.view) - 0.048) < 1e-6);
   assert_true(fabs(sim_mesh_volume(&flight.view) - 8 * 0.625) < 1e-5);
   assert_true(fabs(sim_mesh_volume(&ball.view) - 4.18879) < 0.05);
@@ -229,6 +231,7 @@ static void paths_meet_the_surface(void **state) {
     sim_mesh_distance_destroy(field);
     test_mesh_free(&meshes[m]);
   }
+  test_mesh_free(&meshes[MESHES - 1]);
 }
 
 // Straight through every edge and every vertex of a ball: nothing slips through between two triangles.
@@ -258,11 +261,15 @@ static SimBody body_of(SimShape shape, const float size[3], int32_t steps, const
 // The mesh of a box or a flight of stairs has the share of the shape itself, also where it is thinner than a particle.
 static void shares_are_those_of_the_shape(void **state) {
   (void)state;
-  const struct { SimShape shape; float size[3]; int32_t steps; double bound; } cases[4] = {
-      {SIM_BOX, {0.4f, 0.3f, 0.35f}, 1, 0.015},
-      {SIM_BOX, {0.4f, 0.02f, 0.35f}, 1, 0.015},
-      {SIM_BOX, {0.4f, 0.001f, 0.35f}, 1, 0.02},
-      {SIM_STAIRS, {0.6f, 0.4f, 0.3f}, 4, 0.015}};
+  const struct {
+    SimShape shape;
+    float size[3];
+    int32_t steps;
+    double bound;
+  } cases[4] = {{SIM_BOX, {0.4f, 0.3f, 0.35f}, 1, 0.015},
+                {SIM_BOX, {0.4f, 0.02f, 0.35f}, 1, 0.015},
+                {SIM_BOX, {0.4f, 0.001f, 0.35f}, 1, 0.02},
+                {SIM_STAIRS, {0.6f, 0.4f, 0.3f}, 4, 0.015}};
   SimWall wall = wall_of(SPACING);
   uint64_t seed = 4;
   for (int c = 0; c < 4; c++) {
@@ -276,7 +283,8 @@ static void shares_are_those_of_the_shape(void **state) {
       float point[3], g[3], normal[3];
       random_near(&seed, field, 0.1f, point);
       if (sim_body_distance(&body, point, normal) < 0.3f * SPACING) continue;
-      worst = fmax(worst, fabs((double)sim_mesh_solid(field, point, g) - (double)sim_body_solid(&body, &wall, point, g)));
+      worst =
+          fmax(worst, fabs((double)sim_mesh_solid(field, point, g) - (double)sim_body_solid(&body, &wall, point, g)));
     }
     print_message("shape %d: share within %.4f\n", c, worst);
     assert_true(worst < cases[c].bound);

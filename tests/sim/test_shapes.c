@@ -46,14 +46,25 @@ static void turn(SimBody *body, uint64_t *seed, float most) {
 }
 
 static SimBody zoo_body(const Zoo *zoo, int which) {
-  static const struct { SimShape shape; float size[3]; int32_t steps; } kinds[ZOO] = {
-      [SIM_BOX] = {SIM_BOX, {0.3f, 0.2f, 0.25f}, 1},       [SIM_SPHERE] = {SIM_SPHERE, {0.36f}, 1},
-      [SIM_CYLINDER] = {SIM_CYLINDER, {0.28f, 0.3f}, 1},   [SIM_CAPSULE] = {SIM_CAPSULE, {0.2f, 0.4f}, 1},
-      [SIM_STAIRS] = {SIM_STAIRS, {0.4f, 0.3f, 0.25f}, 4}, [SIM_MESH] = {SIM_MESH, {0}, 1},
-      [SHEET] = {SIM_BOX, {0.4f, 0.001f, 0.4f}, 1},        [NEEDLE] = {SIM_BOX, {0.4f, 1e-4f, 1e-4f}, 1},
-      [ONE_STEP] = {SIM_STAIRS, {0.3f, 0.02f, 0.25f}, 1},  [PLATE_MESH] = {SIM_MESH, {0}, 1},
-      [BEAD] = {SIM_SPHERE, {0.02f}, 1},                   [ROUND_CAPSULE] = {SIM_CAPSULE, {0.2f, 0.2f}, 1}};
-  SimObstacle obstacle = {.shape = kinds[which].shape, .steps = kinds[which].steps, .position = {0.5f, 0.45f, 0.55f},
+  static const struct {
+    SimShape shape;
+    float size[3];
+    int32_t steps;
+  } kinds[ZOO] = {[SIM_BOX] = {SIM_BOX, {0.3f, 0.2f, 0.25f}, 1},
+                  [SIM_SPHERE] = {SIM_SPHERE, {0.36f}, 1},
+                  [SIM_CYLINDER] = {SIM_CYLINDER, {0.28f, 0.3f}, 1},
+                  [SIM_CAPSULE] = {SIM_CAPSULE, {0.2f, 0.4f}, 1},
+                  [SIM_STAIRS] = {SIM_STAIRS, {0.4f, 0.3f, 0.25f}, 4},
+                  [SIM_MESH] = {SIM_MESH, {0}, 1},
+                  [SHEET] = {SIM_BOX, {0.4f, 0.001f, 0.4f}, 1},
+                  [NEEDLE] = {SIM_BOX, {0.4f, 1e-4f, 1e-4f}, 1},
+                  [ONE_STEP] = {SIM_STAIRS, {0.3f, 0.02f, 0.25f}, 1},
+                  [PLATE_MESH] = {SIM_MESH, {0}, 1},
+                  [BEAD] = {SIM_SPHERE, {0.02f}, 1},
+                  [ROUND_CAPSULE] = {SIM_CAPSULE, {0.2f, 0.2f}, 1}};
+  SimObstacle obstacle = {.shape = kinds[which].shape,
+                          .steps = kinds[which].steps,
+                          .position = {0.5f, 0.45f, 0.55f},
                           .rotation = {0.3f, -0.2f, 0.1f, 0.9f}};
   memcpy(obstacle.size, kinds[which].size, sizeof obstacle.size);
   return sim_body_make(&obstacle, which == SIM_MESH ? zoo->fields[0] : which == PLATE_MESH ? zoo->fields[1] : NULL);
@@ -82,7 +93,9 @@ static void stairs_have_the_distance_of_their_triangles(void **state) {
   for (int n = 0; n < 8; n++) {
     const float half[3] = {n < 4 ? 0.4f : 0.15f, n < 4 ? 0.2f : 0.5f, 0.3f};
     TestMesh mesh = test_mesh_stairs(half, steps[n % 4]);
-    SimObstacle obstacle = {.shape = SIM_STAIRS, .size = {2 * half[0], 2 * half[1], 2 * half[2]}, .rotation = {0, 0, 0, 1},
+    SimObstacle obstacle = {.shape = SIM_STAIRS,
+                            .size = {2 * half[0], 2 * half[1], 2 * half[2]},
+                            .rotation = {0, 0, 0, 1},
                             .steps = steps[n % 4]};
     SimBody body = sim_body_make(&obstacle, NULL);
     for (int tries = 0; tries < 1000; tries++) {
@@ -92,7 +105,8 @@ static void stairs_have_the_distance_of_their_triangles(void **state) {
       double truth = reference_mesh_distance(&mesh.view, p) * (reference_mesh_inside(&mesh.view, p) ? -1 : 1);
       float gap = sim_body_distance(&body, point, normal);
       if (fabs((double)gap - truth) > 2e-6)
-        fail_msg("%d steps: distance at (%g, %g, %g) %.7f, is %.7f", steps[n % 4], p[0], p[1], p[2], (double)gap, truth);
+        fail_msg("%d steps: distance at (%g, %g, %g) %.7f, is %.7f", steps[n % 4], p[0], p[1], p[2], (double)gap,
+                 truth);
       for (int k = 0; k < 3; k++) on[k] = point[k] - gap * normal[k];
       assert_true(fabsf(sim_body_distance(&body, on, ignored)) < 2e-6f);
     }
@@ -128,7 +142,8 @@ static void normals_are_unit_everywhere(void **state) {
       for (int k = 0; k < 3; k++) p[k] *= body.mesh ? body.mesh->high[k] : body.half[k];
       float gap = sim_body_local_distance(&body, p, normal);
       float length = sqrtf(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
-      if (!isfinite(gap) || !(fabsf(length - 1) < 1e-5f)) fail_msg("shape %d, point %d: normal %g", which, n, (double)length);
+      if (!isfinite(gap) || !(fabsf(length - 1) < 1e-5f))
+        fail_msg("shape %d, point %d: normal %g", which, n, (double)length);
       float share = sim_body_solid(&body, &zoo.wall, p, g);
       assert_true(isfinite(share) && isfinite(g[0]) && isfinite(g[1]) && isfinite(g[2]));
     }
@@ -205,8 +220,8 @@ static bool out_of_container(const void *what, const float point[3]) {
   return x * x + z * z > r * r;
 }
 
-// The same with the kernel that a half-space has, its part along each axis −f': what shapes make of f, without the layers
-// of the lattice. Cells of a sixth of a spacing, each at a random place in itself.
+// The same with the kernel that a half-space has, its part along each axis −f': what shapes make of f, without the
+// layers of the lattice. Cells of a sixth of a spacing, each at a random place in itself.
 static double kernel_share(const SimWall *wall, Solid *solid, const void *what, const float point[3], uint64_t *seed) {
   enum { CELLS = 20 };
   double sum = 0, all = 0;
@@ -239,7 +254,8 @@ static void shares_are_those_of_the_kernel(void **state) {
       random_point(&seed, point);
       float gap = sim_body_distance(&body, point, normal);
       if (gap < 0.9f * CLEARANCE || gap > 1.2f * SPACING) continue;
-      double error = (double)sim_body_solid(&body, &zoo.wall, point, g) - kernel_share(&zoo.wall, in_body, &body, point, &seed);
+      double error =
+          (double)sim_body_solid(&body, &zoo.wall, point, g) - kernel_share(&zoo.wall, in_body, &body, point, &seed);
       worst = fmax(worst, fabs(error));
       sum += error;
       count++;
@@ -264,7 +280,8 @@ static void a_glass_has_the_share_of_what_is_outside(void **state) {
       float point[3], from[3] = {0.5f * diameters[n], 0.5f, 0.5f};
       SimSolid solid;
       random_point(&seed, point);
-      point[0] = from[0] + diameters[n] * (point[0] - 0.5f) * 1.1f, point[2] = 0.5f + diameters[n] * (point[2] - 0.5f) * 1.1f;
+      point[0] = from[0] + diameters[n] * (point[0] - 0.5f) * 1.1f,
+      point[2] = 0.5f + diameters[n] * (point[2] - 0.5f) * 1.1f;
       sim_boundary_clamp(&glass, NULL, from, point);
       sim_boundary_solid(&glass, NULL, point, &solid);
       double share = kernel_share(&zoo.wall, out_of_container, &glass.container, point, &seed);
@@ -280,8 +297,9 @@ static bool behind_plane(const void *what, const float point[3]) {
   return point[0] > *(const float *)what;
 }
 
-// What is missing of a lattice that is cut to a glass, wherever it lies, is more than at a flat wall; by as much the glass
-// has a larger share. (The flat wall's own share is that of a lattice in line with it: 0.017 less than the average here.)
+// What is missing of a lattice that is cut to a glass, wherever it lies, is more than at a flat wall; by as much the
+// glass has a larger share. (The flat wall's own share is that of a lattice in line with it: 0.017 less than the
+// average here.)
 static void a_glass_bends_the_wall_of_a_lattice(void **state) {
   (void)state;
   Zoo zoo = zoo_make();
@@ -317,8 +335,8 @@ static void bodies_on_the_floor_are_not_counted_twice(void **state) {
   uint64_t seed = 6;
   const float heights[3] = {0.15f, 0, -0.1f}; // of its middle: standing, half in the floor, nearly gone
   for (int n = 0; n < 3; n++) {
-    SimObstacle obstacle = {.shape = SIM_BOX, .size = {0.3f, 0.3f, 0.3f}, .position = {0.5f, heights[n], 0.5f},
-                            .rotation = {0, 0, 0, 1}};
+    SimObstacle obstacle = {
+        .shape = SIM_BOX, .size = {0.3f, 0.3f, 0.3f}, .position = {0.5f, heights[n], 0.5f}, .rotation = {0, 0, 0, 1}};
     SimBody body = sim_body_make(&obstacle, NULL);
     SimBoundary boundary = tank(&zoo, SIM_CONTAINER_BOX, &body, 1);
     const float points[3][3] = {{0.325f, CLEARANCE, 0.5f}, {0.325f, 0.06f, 0.5f}, {0.325f, CLEARANCE, 0.325f}};
@@ -327,7 +345,8 @@ static void bodies_on_the_floor_are_not_counted_twice(void **state) {
       sim_boundary_solid(&boundary, NULL, points[p], &solid);
       double truth = kernel_share(&zoo.wall, out_or_in_box, &body, points[p], &seed);
       if (fabs((double)solid.share - truth) > 0.015)
-        fail_msg("height %g, point %d: share %.4f, of the kernel %.4f", (double)heights[n], p, (double)solid.share, truth);
+        fail_msg("height %g, point %d: share %.4f, of the kernel %.4f", (double)heights[n], p, (double)solid.share,
+                 truth);
     }
   }
   zoo_free(&zoo);
@@ -337,8 +356,11 @@ static void bodies_on_the_floor_are_not_counted_twice(void **state) {
 static void inner_corners_of_stairs_are_corners(void **state) {
   (void)state;
   Zoo zoo = zoo_make();
-  SimObstacle obstacle = {.shape = SIM_STAIRS, .size = {0.8f, 0.8f, 0.8f}, .position = {0.5f, 0.5f, 0.5f},
-                          .rotation = {0, 0, 0, 1}, .steps = 4};
+  SimObstacle obstacle = {.shape = SIM_STAIRS,
+                          .size = {0.8f, 0.8f, 0.8f},
+                          .position = {0.5f, 0.5f, 0.5f},
+                          .rotation = {0, 0, 0, 1},
+                          .steps = 4};
   SimBody body = sim_body_make(&obstacle, NULL);
   SimBoundary with = tank(&zoo, SIM_CONTAINER_BOX, &body, 1), empty = tank(&zoo, SIM_CONTAINER_BOX, NULL, 0);
   for (int n = 0; n < 9; n++) {
@@ -371,8 +393,8 @@ static void check_gradient(const SimBoundary *boundary, const float point[3], co
     float least = fminf(here.gradient[k], fminf(below.gradient[k], above.gradient[k])) - 0.15f,
           most = fmaxf(here.gradient[k], fmaxf(below.gradient[k], above.gradient[k])) + 0.15f;
     if (!(quotient >= least && quotient <= most))
-      fail_msg("%s: gradient %d at (%g, %g, %g): %g, difference quotient %g", what, k, (double)point[0], (double)point[1],
-               (double)point[2], (double)here.gradient[k], (double)quotient);
+      fail_msg("%s: gradient %d at (%g, %g, %g): %g, difference quotient %g", what, k, (double)point[0],
+               (double)point[1], (double)point[2], (double)here.gradient[k], (double)quotient);
   }
 }
 
@@ -426,11 +448,11 @@ static void a_floating_body_has_its_part(void **state) {
     empty.body_count = 0;
     sim_boundary_solid(&empty, NULL, point, &without);
     walls = without.share, sum += walls;
-    if (sum > 0)
-      assert_true(fabsf(solid.friction - (0.25f * walls + 0.5f * share[1] + share[2]) / sum) < 1e-4f);
+    if (sum > 0) assert_true(fabsf(solid.friction - (0.25f * walls + 0.5f * share[1] + share[2]) / sum) < 1e-4f);
     for (int k = 0; k < 3; k++) {
       const float *w = bodies[2].spin, *x = bodies[2].position;
-      float v = w[(k + 1) % 3] * (point[(k + 2) % 3] - x[(k + 2) % 3]) - w[(k + 2) % 3] * (point[(k + 1) % 3] - x[(k + 1) % 3]);
+      float v = w[(k + 1) % 3] * (point[(k + 2) % 3] - x[(k + 2) % 3]) -
+                w[(k + 2) % 3] * (point[(k + 1) % 3] - x[(k + 1) % 3]);
       float mean = sum > 0 ? (share[1] * (float)(k + 1) + share[2] * v) / sum : 0;
       assert_true(fabsf(solid.velocity[k] - mean) < 1e-3f);
     }
@@ -580,8 +602,8 @@ static void moving_bodies_push_particles_ahead(void **state) {
 static void a_paddle_leaves_no_particle_in_itself_or_the_wall(void **state) {
   (void)state;
   Zoo zoo = zoo_make();
-  SimObstacle obstacle = {.shape = SIM_BOX, .size = {0.02f, 0.8f, 0.8f}, .position = {0.5f, 0.5f, 0.5f},
-                          .rotation = {0, 0, 0, 1}};
+  SimObstacle obstacle = {
+      .shape = SIM_BOX, .size = {0.02f, 0.8f, 0.8f}, .position = {0.5f, 0.5f, 0.5f}, .rotation = {0, 0, 0, 1}};
   SimBody paddle = sim_body_make(&obstacle, NULL);
   SimBoundary boundary = tank(&zoo, SIM_CONTAINER_BOX, &paddle, 1);
   paddle.moves = true;
@@ -607,8 +629,8 @@ static void a_paddle_leaves_no_particle_in_itself_or_the_wall(void **state) {
 static void moves_slide_along_bodies(void **state) {
   (void)state;
   Zoo zoo = zoo_make();
-  SimObstacle obstacle = {.shape = SIM_BOX, .size = {0.8f, 0.2f, 0.8f}, .position = {0.5f, 0.3f, 0.5f},
-                          .rotation = {0, 0, 0, 1}};
+  SimObstacle obstacle = {
+      .shape = SIM_BOX, .size = {0.8f, 0.2f, 0.8f}, .position = {0.5f, 0.3f, 0.5f}, .rotation = {0, 0, 0, 1}};
   SimBody block = sim_body_make(&obstacle, NULL);
   SimBoundary boundary = tank(&zoo, SIM_CONTAINER_BOX, &block, 1);
   float from[3] = {0.3f, 0.425f, 0.5f}, to[3] = {0.45f, 0.33f, 0.55f}; // into the top of the block
@@ -639,8 +661,8 @@ static void nan_and_the_infinite_pass_or_end_inside(void **state) {
 
 // ---- What is near ----------------------------------------------------------------------------------------------------
 
-// For random boxes among many moving bodies: where nothing is said to be near, nothing is; else the result is the same as
-// that of a look at everything, to the bit.
+// For random boxes among many moving bodies: where nothing is said to be near, nothing is; else the result is the same
+// as that of a look at everything, to the bit.
 static void what_is_selected_is_all_there_is(void **state) {
   (void)state;
   Zoo zoo = zoo_make();
@@ -668,7 +690,8 @@ static void what_is_selected_is_all_there_is(void **state) {
     boundary.container = (SimContainer){{0, 0, 0}, {10, 10, 10}, n % 2 ? SIM_CONTAINER_GLASS : SIM_CONTAINER_BOX};
     start.container = boundary.container;
     float low[3], high[3], margin = 0.1f;
-    for (int k = 0; k < 3; k++) low[k] = 10 * (float)test_random(&seed), high[k] = low[k] + 0.3f * (float)test_random(&seed);
+    for (int k = 0; k < 3; k++)
+      low[k] = 10 * (float)test_random(&seed), high[k] = low[k] + 0.3f * (float)test_random(&seed);
     bool found = sim_boundary_select(&boundary, low, high, margin, &near);
     *(found ? &something : &nothing) += 1;
     for (int tries = 0; tries < 8; tries++) {
@@ -715,8 +738,11 @@ static void nothing_starts_in_a_body_or_a_wall(void **state) {
     SimWorldDef def = test_def((const float[3]){1, 1, 1}, &block, (const float[3]){1, 1, 1});
     SimBody body = zoo_body(&zoo, which % ZOO);
     SimObstacleDef solid = sim_default_obstacle_def();
-    solid.body = (SimObstacle){.shape = body.shape, .position = {0.5f, 0.45f, 0.55f}, .rotation = {0.3f, -0.2f, 0.1f, 0.9f},
-                               .steps = body.steps, .mesh = body.mesh ? &meshes[which % ZOO == PLATE_MESH]->view : NULL};
+    solid.body = (SimObstacle){.shape = body.shape,
+                               .position = {0.5f, 0.45f, 0.55f},
+                               .rotation = {0.3f, -0.2f, 0.1f, 0.9f},
+                               .steps = body.steps,
+                               .mesh = body.mesh ? &meshes[which % ZOO == PLATE_MESH]->view : NULL};
     for (int k = 0; k < 3; k++) solid.body.size[k] = 2 * body.half[k];
     def.obstacle_count = 1, def.obstacles = &solid;
     def.container.shape = which < ZOO ? SIM_CONTAINER_BOX : SIM_CONTAINER_GLASS;
@@ -730,6 +756,48 @@ static void nothing_starts_in_a_body_or_a_wall(void **state) {
     sim_frame_buffer_destroy(buffer);
     sim_world_destroy(world);
   }
+  zoo_free(&zoo);
+}
+
+// ---- Water -----------------------------------------------------------------------------------------------------------
+
+// Water falls into a glass with a flight of stairs, a capsule and a mesh in it and comes to rest: no particle is in a
+// body or out of the glass, and the density beside the walls is that of the water.
+static void water_rests_in_a_glass_of_obstacles(void **state) {
+  (void)state;
+  Zoo zoo = zoo_make();
+  SimBlockDef block;
+  SimWorldDef def = test_def((const float[3]){1, 1, 1}, &block, (const float[3]){1, 0.5f, 1});
+  SimObstacleDef solids[3] = {sim_default_obstacle_def(), sim_default_obstacle_def(), sim_default_obstacle_def()};
+  const SimObstacle shapes[3] = {
+      {.shape = SIM_STAIRS,
+       .size = {0.3f, 0.3f, 0.3f},
+       .position = {0.7f, 0.15f, 0.5f},
+       .rotation = {0, 0, 0, 1},
+       .steps = 3},
+      {.shape = SIM_CAPSULE, .size = {0.15f, 0.35f}, .position = {0.3f, 0.25f, 0.6f}, .rotation = {0.2f, 0, 0, 1}},
+      {.shape = SIM_MESH, .position = {0.4f, 0.3f, 0.35f}, .rotation = {0, 0, 0.4f, 1}, .mesh = &zoo.ring.view}};
+  SimBody bodies[3];
+  for (int b = 0; b < 3; b++) {
+    solids[b].body = shapes[b];
+    bodies[b] = sim_body_make(&shapes[b], b == 2 ? zoo.fields[0] : NULL);
+  }
+  def.obstacle_count = 3, def.obstacles = solids;
+  def.container.shape = SIM_CONTAINER_GLASS;
+  SimWorld *world = test_create(&def);
+  SimFrameBuffer *buffer = sim_frame_buffer_create();
+  SimBoundary boundary = tank(&zoo, SIM_CONTAINER_GLASS, bodies, 3);
+  for (int second = 0; second < 2; second++) {
+    test_advance(world, 60);
+    const SimFrame *frame = test_frame(world, 0, buffer);
+    for (int32_t i = 0; i < frame->count; i++) must_be_outside(&boundary, frame->position + 3 * i, 0, "at rest");
+  }
+  SimMeasures measures = sim_world_measures(world);
+  print_message("density off by %.4f on the average, %.4f at most; speed %.3f m/s at most\n",
+                measures.mean_density_error, measures.max_density_error, measures.max_speed);
+  assert_true(measures.mean_density_error < 0.01 && measures.max_density_error < 0.05);
+  sim_frame_buffer_destroy(buffer);
+  sim_world_destroy(world);
   zoo_free(&zoo);
 }
 
@@ -754,6 +822,7 @@ int main(void) {
       cmocka_unit_test(nan_and_the_infinite_pass_or_end_inside),
       cmocka_unit_test(what_is_selected_is_all_there_is),
       cmocka_unit_test(nothing_starts_in_a_body_or_a_wall),
+      cmocka_unit_test(water_rests_in_a_glass_of_obstacles),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -52,7 +52,7 @@ TestMesh test_mesh_box(const float half[3]) {
 TestMesh test_mesh_stairs(const float half[3], int32_t steps) {
   TestMesh mesh = make(6 * (steps + 1), 12 * steps + 12);
   int32_t(*foot)[2] = malloc(sizeof *foot * (size_t)(steps + 1)), (*low)[2] = malloc(sizeof *low * (size_t)(steps + 1)),
-         (*high)[2] = malloc(sizeof *high * (size_t)(steps + 1));
+  (*high)[2] = malloc(sizeof *high * (size_t)(steps + 1));
   if (!foot || !low || !high) abort();
   for (int32_t k = 0; k <= steps; k++)
     for (int side = 0; side < 2; side++) {
@@ -66,8 +66,10 @@ TestMesh test_mesh_stairs(const float half[3], int32_t steps) {
     for (int side = 0; side < 2; side++) {
       const int32_t corner[5] = {foot[k + 1][side], low[k + 1][side], high[k][side], low[k][side], foot[k][side]};
       for (int n = 1; n < (k == 0 ? 3 : 4); n++) // on the first step, riser and floor begin in one point
-        if (side) add_triangle(&mesh, corner[0], corner[n], corner[n + 1]);
-        else add_triangle(&mesh, corner[0], corner[n + 1], corner[n]);
+        if (side)
+          add_triangle(&mesh, corner[0], corner[n], corner[n + 1]);
+        else
+          add_triangle(&mesh, corner[0], corner[n + 1], corner[n]);
     }
     add_quad(&mesh, foot[k][0], foot[k + 1][0], foot[k + 1][1], foot[k][1]); // underside
     add_quad(&mesh, low[k][0], low[k][1], high[k][1], high[k][0]);           // riser
@@ -90,7 +92,8 @@ static void add_part_of_ball(TestMesh *mesh, int32_t a, int32_t b, int32_t c, fl
   int32_t m[3];
   for (int j = 0; j < 3; j++) {
     // The middle of an edge is made once: it is remembered under the numbers of both ends.
-    int32_t p = corner[j], q = corner[(j + 1) % 3], *known = &middle[(size_t)(p < q ? p : q) * (size_t)most + (p < q ? q : p)];
+    int32_t p = corner[j], q = corner[(j + 1) % 3],
+            *known = &middle[(size_t)(p < q ? p : q) * (size_t)most + (p < q ? q : p)];
     if (*known == 0) {
       const float *v = mesh->vertex + 3 * p, *w = mesh->vertex + 3 * q;
       float x = v[0] + w[0], y = v[1] + w[1], z = v[2] + w[2], length = sqrtf(x * x + y * y + z * z) / radius;
@@ -117,8 +120,10 @@ TestMesh test_mesh_ball(float radius, int rounds) {
   for (int k = 0; k < 8; k++) {
     int32_t x = k & 1, y = 2 + (k >> 1 & 1), z = 4 + (k >> 2 & 1);
     bool odd = ((k & 1) + (k >> 1 & 1) + (k >> 2 & 1)) % 2 != 0;
-    if (odd) add_part_of_ball(&mesh, x, y, z, radius, rounds, middle, vertices);
-    else add_part_of_ball(&mesh, x, z, y, radius, rounds, middle, vertices);
+    if (odd)
+      add_part_of_ball(&mesh, x, y, z, radius, rounds, middle, vertices);
+    else
+      add_part_of_ball(&mesh, x, z, y, radius, rounds, middle, vertices);
   }
   free(middle);
   return mesh;
@@ -192,7 +197,8 @@ bool reference_mesh_inside(const SimMesh *mesh, const double point[3]) {
     }
     for (int j = 0; j < 3; j++)
       for (int k = 0; k < 3; k++) d[j] += c[j][k] * c[(j + 1) % 3][k];
-    double volume = c[0][0] * (c[1][1] * c[2][2] - c[1][2] * c[2][1]) + c[0][1] * (c[1][2] * c[2][0] - c[1][0] * c[2][2]) +
+    double volume = c[0][0] * (c[1][1] * c[2][2] - c[1][2] * c[2][1]) +
+                    c[0][1] * (c[1][2] * c[2][0] - c[1][0] * c[2][2]) +
                     c[0][2] * (c[1][0] * c[2][1] - c[1][1] * c[2][0]);
     sum += 2 * atan2(volume, l[0] * l[1] * l[2] + d[0] * l[2] + d[1] * l[0] + d[2] * l[1]);
   }
