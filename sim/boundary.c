@@ -1,25 +1,142 @@
-// Walls and obstacles: see boundary.h. Density share after the idea of Akinci et al., Versatile Rigid-Fluid Coupling for
-// Incompressible SPH, 2012 (Eq. 3–5: a boundary counts like fluid at rest), with the sum over the boundary in closed form.
+// Walls and obstacles in the density sum: see boundary.h. After the idea of Akinci et al., Versatile Rigid-Fluid
+// Coupling for Incompressible SPH, 2012 (Eq. 3–5: a boundary counts like fluid at rest), with the sum over the boundary
+// in closed form.
+//
+// How shares are put together. F_k is the share of the container's faces across axis k, s_b that of body b.
+// - Faces at right angles: what is free is A = Π (1 − F_k), see wall.h.
+// - A body inside the container shares no volume with the walls, so shares add up: A − s is free. This is the corner
+//   where a box stands on the floor. A body that reaches through a face, a pillar sunk into the floor, is as good as
+//   independent of that face, as the faces are of each other: (1 − F) (1 − s) is free. How far it reaches through the
+//   face, in spacings, weighs between the two: w in [0, 1], and A − s Π (1 − w_k F_k) is free.
+// - Several bodies: each leaves the same part of what the others leave free. Those that touch each other count a little
+//   less in the edge where they meet than they should, as if each reached into the other.
 #include "sim/boundary.h"
 
 #include <math.h>
 #include <string.h>
 
-// Free share along one axis between the two walls at low and high, and its derivative.
-static float free_between(const SimWall *wall, float x, float low, float high, float *slope) {
-  float lower, upper;
-  float share = 1 - sim_wall_share(wall, x - low, &lower) - sim_wall_share(wall, high - x, &upper);
-  *slope = upper - lower;
-  return share > 0 ? share : 0;
+// ---- The container ---------------------------------------------------------------------------------------------------
+
+// The container's faces in its own coordinates. A box has two faces across each axis; a glass has its side across the
+// radius (axis 0), floor and lid across y (axis 1) and nothing across axis 2.
+typedef struct Faces {
+  float share[3][2], slope[3][2]; ///< of the lower and the upper face, and the derivatives, 1/m
+  float outward[2];               ///< glass: the direction of the radius in x and z
+} Faces;
+
+static void glass_axis(const SimContainer *container, float axis[2], float *radius) {
+  axis[0] = 0.5f * (container->min[0] + container->max[0]);
+  axis[1] = 0.5f * (container->min[2] + container->max[2]);
+  *radius = 0.5f * sim_smaller(container->max[0] - container->min[0], container->max[2] - container->min[2]);
 }
 
-static bool near_container(const SimBoundary *boundary, const float point[3]) {
-  for (int k = 0; k < 3; k++)
-    if (point[k] < boundary->container.min[k] + boundary->wall.reach ||
-        point[k] > boundary->container.max[k] - boundary->wall.reach)
-      return true;
-  return false;
+static void face_pair(const SimBoundary *boundary, Faces *faces, int k, float x) {
+  const SimContainer *c = &boundary->container;
+  faces->share[k][0] = sim_wall_share(&boundary->wall, x - c->min[k], &faces->slope[k][0]);
+  faces->share[k][1] = sim_wall_share(&boundary->wall, c->max[k] - x, &faces->slope[k][1]);
+  faces->slope[k][1] = -faces->slope[k][1];
 }
+
+static void glass_faces(const SimBoundary *boundary, const float point[3], Faces *faces) {
+  float axis[2], radius;
+  *faces = (Faces){0};
+  glass_axis(&boundary->container, axis, &radius);
+  float x = point[0] - axis[0], z = point[2] - axis[1], r = sqrtf(x * x + z * z);
+  if (r > 0) faces->outward[0] = x / r, faces->outward[1] = z / r;
+  float shift = 0.5f * boundary->wall.spread / radius; // the wall bends around the water
+  faces->share[0][1] = sim_wall_share(&boundary->wall, radius - r - shift, &faces->slope[0][1]);
+  faces->slope[0][1] = -faces->slope[0][1];
+  face_pair(boundary, faces, 1, point[1]);
+}
+
+static void container_faces(const SimBoundary *boundary, const float point[3], Faces *faces) {
+  if (boundary->container.shape == SIM_CONTAINER_GLASS) {
+    glass_faces(boundary, point, faces);
+    return;
+  }
+  for (int k = 0; k < 3; k++) face_pair(boundary, faces, k, point[k]);
+}
+
+// A derivative in the container's coordinates as one in space.
+static void gradient_of(const SimBoundary *boundary, const Faces *faces, const float slope[3], float gradient[3]) {
+  memcpy(gradient, slope, 3 * sizeof(float));
+  if (boundary->container.shape != SIM_CONTAINER_GLASS) return;
+  gradient[0] = slope[0] * faces->outward[0];
+  gradient[2] = slope[0] * faces->outward[1];
+}
+
+/// One number for each face.
+typedef struct Weights {
+  float w[3][2];
+} Weights;
+
+// Π (1 − w F) over the axes, never negative, and its gradient.
+static float left_free(const SimBoundary *boundary, const Faces *faces, const Weights *weights, float gradient[3]) {
+  float a[3], da[3];
+  for (int k = 0; k < 3; k++) {
+    const float *w = weights->w[k];
+    a[k] = 1 - w[0] * faces->share[k][0] - w[1] * faces->share[k][1];
+    da[k] = -w[0] * faces->slope[k][0] - w[1] * faces->slope[k][1];
+    if (a[k] < 0) a[k] = da[k] = 0;
+  }
+  const float slope[3] = {da[0] * a[1] * a[2], a[0] * da[1] * a[2], a[0] * a[1] * da[2]};
+  gradient_of(boundary, faces, slope, gradient);
+  return a[0] * a[1] * a[2];
+}
+
+static const Weights whole = {{{1, 1}, {1, 1}, {1, 1}}};
+
+static bool near_container(const SimBoundary *boundary, const float low[3], const float high[3], float reach) {
+  const SimContainer *c = &boundary->container;
+  bool glass = c->shape == SIM_CONTAINER_GLASS;
+  for (int k = 0; k < 3; k++) {
+    if (glass && k != 1) continue;
+    if (!(low[k] >= c->min[k] + reach && high[k] <= c->max[k] - reach)) return true;
+  }
+  if (!glass) return false;
+  float axis[2], radius;
+  glass_axis(c, axis, &radius);
+  float x = sim_larger(axis[0] - low[0], high[0] - axis[0]), z = sim_larger(axis[1] - low[2], high[2] - axis[1]);
+  reach += 0.5f * boundary->wall.spread / radius;
+  return !(reach < radius && x * x + z * z <= (radius - reach) * (radius - reach));
+}
+
+void sim_boundary_into_container(const SimBoundary *boundary, float clearance, float point[3]) {
+  const SimContainer *c = &boundary->container;
+  bool glass = c->shape == SIM_CONTAINER_GLASS;
+  for (int k = 0; k < 3; k++) {
+    if (glass && k != 1) continue;
+    float low = c->min[k] + clearance, high = c->max[k] - clearance;
+    if (low > high) low = high = 0.5f * (c->min[k] + c->max[k]);
+    // Written so that a NaN passes through and is caught by the world, not hidden.
+    if (point[k] < low) point[k] = low;
+    if (point[k] > high) point[k] = high;
+  }
+  if (!glass) return;
+  float axis[2], radius;
+  glass_axis(c, axis, &radius);
+  float x = point[0] - axis[0], z = point[2] - axis[1], most = sim_larger(0, radius - clearance), r2 = x * x + z * z;
+  if (!(r2 > most * most)) return;
+  float scale = most / sqrtf(r2);
+  point[0] = axis[0] + scale * x;
+  point[2] = axis[1] + scale * z;
+}
+
+static bool in_container(const SimBoundary *boundary, float clearance, const float point[3]) {
+  const SimContainer *c = &boundary->container;
+  bool glass = c->shape == SIM_CONTAINER_GLASS;
+  for (int k = 0; k < 3; k++) {
+    if (glass && k != 1) continue;
+    if (!(point[k] >= c->min[k] + clearance && point[k] <= c->max[k] - clearance)) return false;
+  }
+  if (!glass) return true;
+  float axis[2], radius;
+  glass_axis(c, axis, &radius);
+  float x = point[0] - axis[0], z = point[2] - axis[1], most = radius - clearance;
+  return most >= 0 && x * x + z * z <= most * most;
+}
+
+// ---- Bodies ----------------------------------------------------------------------------------------------------------
 
 static bool near_body(const SimBody *body, const float point[3], float reach) {
   float d2 = 0, r = body->bound + reach;
@@ -27,118 +144,166 @@ static bool near_body(const SimBody *body, const float point[3], float reach) {
   return d2 < r * r;
 }
 
-void sim_boundary_solid(const SimBoundary *boundary, const float point[3], SimSolid *solid) {
-  *solid = (SimSolid){.body = -1};
-  float space = 1, slope[3] = {0, 0, 0}; // what is free, and its gradient
-  if (near_container(boundary, point)) {
-    float a[3], da[3];
-    for (int k = 0; k < 3; k++)
-      a[k] = free_between(&boundary->wall, point[k], boundary->container.min[k], boundary->container.max[k], &da[k]);
-    space = a[0] * a[1] * a[2];
-    slope[0] = da[0] * a[1] * a[2];
-    slope[1] = a[0] * da[1] * a[2];
-    slope[2] = a[0] * a[1] * da[2];
+// How far a body reaches through each face, from 0 (not) to 1 (by a spacing or more).
+static void reach_through(const SimBoundary *boundary, const SimBody *body, Weights *weights) {
+  float(*weight)[2] = weights->w;
+  const SimContainer *c = &boundary->container;
+  float low[3], high[3];
+  sim_body_box(body, low, high);
+  for (int k = 0; k < 3; k++) weight[k][0] = c->min[k] - low[k], weight[k][1] = high[k] - c->max[k];
+  if (c->shape == SIM_CONTAINER_GLASS) {
+    float axis[2], radius, x = body->position[0], z = body->position[2];
+    glass_axis(c, axis, &radius);
+    float corner = hypotf(sim_larger(axis[0] - low[0], high[0] - axis[0]), sim_larger(axis[1] - low[2], high[2] - axis[1]));
+    weight[0][1] = sim_smaller(corner, hypotf(x - axis[0], z - axis[1]) + body->bound) - radius;
+    weight[0][0] = weight[2][0] = weight[2][1] = 0;
   }
-  for (int32_t b = 0; b < boundary->body_count; b++) {
-    if (!near_body(&boundary->bodies[b], point, boundary->wall.reach)) continue;
-    float g[3], rest = 1 - sim_body_solid(&boundary->bodies[b], &boundary->wall, point, g);
-    for (int k = 0; k < 3; k++) slope[k] = slope[k] * rest - space * g[k];
-    space *= rest;
-  }
-  for (int k = 0; k < 3; k++) solid->gradient[k] = -slope[k];
-  solid->share = 1 - space;
+  for (int k = 0; k < 3; k++)
+    for (int side = 0; side < 2; side++)
+      weight[k][side] = sim_smaller(sim_larger(weight[k][side] / boundary->wall.spacing, 0), 1);
 }
 
-bool sim_boundary_near_box(const SimBoundary *boundary, const float low[3], const float high[3], float margin) {
-  float reach = boundary->wall.reach + margin;
+static void add_velocity(const SimBody *body, const float point[3], float share, SimSolid *solid) {
+  float d[3];
+  const float *w = body->spin, *v = body->velocity;
+  for (int k = 0; k < 3; k++) d[k] = point[k] - body->position[k];
+  solid->velocity[0] += share * (v[0] + w[1] * d[2] - w[2] * d[1]);
+  solid->velocity[1] += share * (v[1] + w[2] * d[0] - w[0] * d[2]);
+  solid->velocity[2] += share * (v[2] + w[0] * d[1] - w[1] * d[0]);
+}
+
+// What is gathered on the way over the bodies.
+typedef struct Sum {
+  Faces faces;
+  bool walls;                       ///< the container is in reach, and faces are set
+  float walls_free, walls_slope[3]; ///< A and its gradient
+  float free, slope[3];             ///< what is free so far, and its gradient
+  float shares;                     ///< Σ of all shares, to weigh velocity and friction by
+  float body_share;                 ///< of solid->body
+} Sum;
+
+// The part of what the walls leave free that the body leaves free, 1 − s Π (1 − w F)/A, and its gradient.
+static float body_rest(const SimBoundary *boundary, const Sum *sum, const SimBody *body, float share, const float g[3],
+                       float gradient[3]) {
+  Weights weights;
+  float apart_slope[3], a = sum->walls_free;
+  for (int k = 0; k < 3; k++) gradient[k] = -g[k];
+  if (!sum->walls || a <= 0) return 1 - share;
+  reach_through(boundary, body, &weights);
+  float apart = left_free(boundary, &sum->faces, &weights, apart_slope), rest = 1 - share * apart / a;
   for (int k = 0; k < 3; k++)
-    if (low[k] < boundary->container.min[k] + reach || high[k] > boundary->container.max[k] - reach) return true;
+    gradient[k] =
+        rest < 0 ? 0 : -(g[k] * apart + share * apart_slope[k]) / a + share * apart * sum->walls_slope[k] / (a * a);
+  return rest < 0 ? 0 : rest;
+}
+
+static void add_body(const SimBoundary *boundary, int32_t b, const float point[3], Sum *sum, SimSolid *solid) {
+  const SimBody *body = &boundary->bodies[b];
+  float g[3], rest_slope[3], share = sim_body_solid(body, &boundary->wall, point, g);
+  if (share <= 0) return;
+  float rest = body_rest(boundary, sum, body, share, g, rest_slope);
+  for (int k = 0; k < 3; k++) solid->body_gradient[k] *= rest;
+  if (body->floats && share > sum->body_share) {
+    solid->body = b;
+    sum->body_share = share;
+    for (int k = 0; k < 3; k++) solid->body_gradient[k] = -sum->free * rest_slope[k];
+  }
+  for (int k = 0; k < 3; k++) sum->slope[k] = sum->slope[k] * rest + sum->free * rest_slope[k];
+  sum->free *= rest;
+  sum->shares += share;
+  solid->friction += share * body->friction;
+  if (body->moves) add_velocity(body, point, share, solid);
+}
+
+void sim_boundary_solid(const SimBoundary *boundary, const SimNear *near, const float point[3], SimSolid *solid) {
+  *solid = (SimSolid){.body = -1};
+  Sum sum;
+  sum.walls = (!near || near->container) && near_container(boundary, point, point, boundary->wall.reach);
+  sum.free = 1, sum.shares = sum.body_share = 0;
+  sum.slope[0] = sum.slope[1] = sum.slope[2] = 0;
+  if (sum.walls) {
+    container_faces(boundary, point, &sum.faces);
+    sum.free = sum.walls_free = left_free(boundary, &sum.faces, &whole, sum.slope);
+    memcpy(sum.walls_slope, sum.slope, sizeof sum.slope);
+    sum.shares = 1 - sum.free;
+    solid->friction = sum.shares * boundary->friction;
+  }
+  bool all = !near || near->count < 0;
+  int32_t count = all ? boundary->body_count : near->count;
+  for (int32_t n = 0; n < count; n++) {
+    int32_t b = all ? n : near->body[n];
+    if (near_body(&boundary->bodies[b], point, boundary->wall.reach)) add_body(boundary, b, point, &sum, solid);
+  }
+  solid->share = 1 - sum.free;
+  for (int k = 0; k < 3; k++) solid->gradient[k] = -sum.slope[k];
+  if (sum.shares <= 0) return;
+  solid->friction /= sum.shares;
+  for (int k = 0; k < 3; k++) solid->velocity[k] /= sum.shares;
+}
+
+// ---- What is near ----------------------------------------------------------------------------------------------------
+
+// The ball around a body on its whole way from the old pose to the new one.
+static void swept_ball(const SimBody *body, float centre[3], float *radius) {
+  float d2 = 0;
+  for (int k = 0; k < 3; k++) {
+    float old = body->moves ? body->old_position[k] : body->position[k];
+    centre[k] = 0.5f * (old + body->position[k]);
+    d2 += (body->position[k] - old) * (body->position[k] - old);
+  }
+  *radius = body->bound + (d2 > 0 ? 0.5f * sqrtf(d2) : 0);
+}
+
+// The farthest that a point of the body went.
+static float farthest_move(const SimBody *body) {
+  float d2 = 0, turned2 = 0;
+  if (!body->moves) return 0;
+  for (int k = 0; k < 3; k++)
+    d2 += (body->position[k] - body->old_position[k]) * (body->position[k] - body->old_position[k]);
+  for (int k = 0; k < 9; k++)
+    turned2 += (body->rotation[k] - body->old_rotation[k]) * (body->rotation[k] - body->old_rotation[k]);
+  // A turn by θ differs from none by 2 √2 sin(θ/2) in this norm, and moves a point at distance r by 2 r sin(θ/2) at
+  // most.
+  return sqrtf(d2) + sqrtf(0.5f * turned2) * body->bound;
+}
+
+static void select_bodies(const SimBoundary *boundary, const float low[3], const float high[3], float reach,
+                          SimNear *near) {
+  near->count = 0;
   for (int32_t b = 0; b < boundary->body_count; b++) {
-    const SimBody *body = &boundary->bodies[b];
-    float d2 = 0, r = body->bound + reach;
+    float centre[3], r, d2 = 0;
+    swept_ball(&boundary->bodies[b], centre, &r);
+    r += reach;
     for (int k = 0; k < 3; k++) {
-      float outside = fmaxf(0, fmaxf(low[k] - body->position[k], body->position[k] - high[k]));
+      float outside = sim_larger(0, sim_larger(low[k] - centre[k], centre[k] - high[k]));
       d2 += outside * outside;
     }
-    if (d2 < r * r) return true;
-  }
-  return false;
-}
-
-// ---- Clamp -----------------------------------------------------------------------------------------------------------
-
-static void clamp_to_container(const SimBoundary *boundary, float point[3]) {
-  for (int k = 0; k < 3; k++) {
-    float low = boundary->container.min[k] + boundary->clearance,
-          high = boundary->container.max[k] - boundary->clearance;
-    if (low > high) low = high = 0.5f * (boundary->container.min[k] + boundary->container.max[k]);
-    // Written so that a NaN passes through and is caught by the world, not hidden.
-    if (point[k] < low) point[k] = low;
-    if (point[k] > high) point[k] = high;
-  }
-}
-
-static float body_gap(const SimBoundary *boundary, int32_t b, const float point[3]) {
-  float normal[3];
-  return sim_body_distance(&boundary->bodies[b], point, normal);
-}
-
-// Walk from `from` towards `to` in steps of the distance to the body (sphere tracing); stop where it is reached.
-static void stop_at_body(const SimBoundary *boundary, int32_t b, const float from[3], float to[3]) {
-  float d[3] = {to[0] - from[0], to[1] - from[1], to[2] - from[2]};
-  float length = sqrtf(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-  float touch = 0.25f * boundary->clearance, travelled = 0;
-  for (int step = 0; step < 32 && travelled < length; step++) {
-    float t = travelled / length, p[3] = {from[0] + t * d[0], from[1] + t * d[1], from[2] + t * d[2]};
-    float gap = body_gap(boundary, b, p);
-    if (gap <= touch && step > 0) {
-      memcpy(to, p, sizeof p);
+    if (!(d2 <= r * r)) continue;
+    if (near->count == SIM_MAX_NEAR) {
+      near->count = -1;
       return;
     }
-    travelled += gap > touch ? gap : touch;
+    near->body[near->count++] = b;
   }
 }
 
-static bool push_out_of_bodies(const SimBoundary *boundary, float point[3]) {
-  bool moved = false;
-  for (int32_t b = 0; b < boundary->body_count; b++) {
-    if (!near_body(&boundary->bodies[b], point, boundary->clearance)) continue;
-    float normal[3], gap = sim_body_distance(&boundary->bodies[b], point, normal);
-    if (!(gap < boundary->clearance * 0.999f)) continue;
-    for (int k = 0; k < 3; k++) point[k] += (boundary->clearance - gap) * normal[k];
-    moved = true;
-  }
-  return moved;
-}
-
-static float deepest(const SimBoundary *boundary, const float point[3]) {
-  float least = INFINITY;
-  for (int32_t b = 0; b < boundary->body_count; b++) least = fminf(least, body_gap(boundary, b, point));
-  return least;
-}
-
-void sim_boundary_clamp(const SimBoundary *boundary, const float from[3], float to[3]) {
-  clamp_to_container(boundary, to);
-  if (boundary->body_count == 0) return;
-  float d2 = 0;
-  for (int k = 0; k < 3; k++) d2 += (to[k] - from[k]) * (to[k] - from[k]);
-  float length = sqrtf(d2);
-  bool near = false;
-  for (int32_t b = 0; b < boundary->body_count; b++) {
-    if (!near_body(&boundary->bodies[b], to, boundary->clearance + length)) continue;
-    near = true;
-    if (body_gap(boundary, b, from) < length) stop_at_body(boundary, b, from, to);
-  }
-  if (!near) return;
-  for (int round = 0; round < 4 && push_out_of_bodies(boundary, to); round++) clamp_to_container(boundary, to);
-  // Wedged between an obstacle and a wall that are nearer to each other than a particle is wide: stay where it was.
-  if (deepest(boundary, to) < 0) memcpy(to, from, 3 * sizeof(float));
+bool sim_boundary_select(const SimBoundary *boundary, const float low[3], const float high[3], float margin,
+                         SimNear *near) {
+  float reach = sim_larger(boundary->wall.reach, boundary->clearance + margin), push = 0;
+  near->container = near_container(boundary, low, high, reach);
+  reach += 2 * boundary->clearance; // what one body pushes away may come to another one
+  select_bodies(boundary, low, high, reach, near);
+  for (int32_t n = 0; n < near->count; n++) push = sim_larger(push, farthest_move(&boundary->bodies[near->body[n]]));
+  if (push > 0) select_bodies(boundary, low, high, reach + push, near);
+  return near->container || near->count != 0;
 }
 
 bool sim_boundary_free(const SimBoundary *boundary, const float point[3]) {
-  float needed = 0.9f * boundary->clearance;
-  for (int k = 0; k < 3; k++)
-    if (!(point[k] >= boundary->container.min[k] + needed && point[k] <= boundary->container.max[k] - needed))
-      return false;
-  return boundary->body_count == 0 || deepest(boundary, point) >= needed;
+  float needed = 0.9f * boundary->clearance, normal[3];
+  if (!in_container(boundary, needed, point)) return false;
+  for (int32_t b = 0; b < boundary->body_count; b++) {
+    const SimBody *body = &boundary->bodies[b];
+    if (near_body(body, point, needed) && sim_body_distance(body, point, normal) < needed) return false;
+  }
+  return true;
 }

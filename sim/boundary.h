@@ -2,8 +2,20 @@
 //
 // 1. They count in the density sum (wall.h), so that a particle at a wall is neither short of neighbours (it would stack
 //    there, and walls would suck) nor crowded.
-// 2. A hard clamp at the end of every move: no particle's centre comes nearer than `clearance` to a wall, whatever the
-//    pressure says. Moves are followed along their path, so thin obstacles are not jumped over.
+// 2. A hard clamp at the end of every move (boundary_clamp.c): no particle's centre comes nearer than `clearance` to a
+//    wall, whatever the pressure says. Moves are followed along their path, relative to bodies that move themselves, so
+//    thin obstacles are not jumped over and thin paddles do not pass through the water.
+//
+// Most particles are near no wall, and each of the others near few bodies. So for a block of particles that lie close
+// together, ask once:
+//
+//   SimNear near;
+//   if (sim_boundary_select(boundary, low, high, margin, &near))       // low, high: the box around the block's particles
+//     for each of them { sim_boundary_solid(boundary, &near, …); sim_boundary_clamp(boundary, &near, …); }
+//
+// Where it is false, the share of every point in the box is 0, and no move that begins and ends at most `margin` outside
+// it is changed. Where it is true, SimNear holds for such points and moves what there is to look at, and the results are
+// the same as with NULL instead, which looks at everything.
 #ifndef LIDO_SIM_BOUNDARY_H
 #define LIDO_SIM_BOUNDARY_H
 
@@ -30,16 +42,34 @@ typedef struct SimSolid {
   float body_gradient[3]; ///< 1/m, what that body adds to the gradient
 } SimSolid;
 
-void sim_boundary_solid(const SimBoundary *boundary, const float point[3], SimSolid *solid);
+/// Bodies that SimNear can list. Where there are more, it says to look at all of them.
+#define SIM_MAX_NEAR 256
 
-/// Whether any wall or body may be in reach (of the density sum or of a move of `margin`) of a point of the box.
-bool sim_boundary_near_box(const SimBoundary *boundary, const float low[3], const float high[3], float margin);
+/// What is in reach of a block of particles.
+typedef struct SimNear {
+  bool container;
+  int32_t count;               ///< of bodies, −1: look at all
+  int32_t body[SIM_MAX_NEAR];  ///< (count), indices, growing
+} SimNear;
 
-/// Correct a move from a valid place `from` to `to`: stop at obstacles, then keep clear of all walls.
-void sim_boundary_clamp(const SimBoundary *boundary, const float from[3], float to[3]);
+/// Whether any wall or body may be in reach of a point of the box, by its share or by a move that stays within `margin`
+/// (m, at least 0) of the box, while the bodies move from their old poses to their new ones; and which.
+bool sim_boundary_select(const SimBoundary *boundary, const float low[3], const float high[3], float margin,
+                         SimNear *near);
+
+/// Share of the density sum and what goes with it, of the bodies in their new poses. `near` may be NULL.
+void sim_boundary_solid(const SimBoundary *boundary, const SimNear *near, const float point[3], SimSolid *solid);
+
+/// Correct a move from a valid place `from` (of the start of the substep, bodies in their old poses) to `to` (at its
+/// end): stop at obstacles, slide along them, keep clear of all walls. Where a body moved onto the particle, it is
+/// pushed ahead. Returns the floating body that had a say, −1: none. `near` may be NULL. A NaN stays a NaN.
+int32_t sim_boundary_clamp(const SimBoundary *boundary, const SimNear *near, const float from[3], float to[3]);
 
 /// Whether a particle may start here: inside the container, touching no wall or obstacle by more than a tenth of the
 /// clearance.
 bool sim_boundary_free(const SimBoundary *boundary, const float point[3]);
+
+/// Move a point into the container until it is `clearance` (m) away from the walls; a NaN stays a NaN.
+void sim_boundary_into_container(const SimBoundary *boundary, float clearance, float point[3]);
 
 #endif

@@ -67,13 +67,14 @@ typedef struct SimMesh {
 typedef struct SimObstacle {
   SimShape shape;
   float size[3];               ///< m: box, stairs: full edge lengths; sphere: (diameter, –, –); cylinder, capsule: (diameter,
-                               ///< full height along y, –); mesh: unused, its vertices are as large as they are
+                               ///< full height along y, –), a capsule at least as high as wide; mesh: unused, its vertices
+                               ///< are as large as they are
   float position[3];           ///< m, the centre (of a mesh: the origin of its vertices)
   float rotation[4];           ///< unit quaternion x, y, z, w
   float colour[3];             ///< linear light, [0, 1]
   int32_t steps;               ///< stairs: number of steps, [1, 1000]; step k (from 0) reaches up to (k + 1)/steps of the
                                ///< height and begins at k/steps of the length
-  const SimMesh *mesh;         ///< mesh: its triangles; else NULL
+  const SimMesh *mesh;         ///< mesh: its triangles, in a frame of a world the world's own copy; else NULL
 } SimObstacle;
 
 typedef enum SimContainerShape {

@@ -29,6 +29,27 @@ SimStep sim_step_make(SimWorld *world, float dt) {
   return step;
 }
 
+// ---- Boxes -----------------------------------------------------------------------------------------------------------
+
+/// A box around points.
+typedef struct Box {
+  float low[3], high[3];
+} Box;
+
+static Box box_empty(void) {
+  return (Box){{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+}
+
+static void box_add(Box *box, int axis, const float *value, int32_t count) {
+  float low = box->low[axis], high = box->high[axis];
+  for (int32_t i = 0; i < count; i++) {
+    low = value[i] < low ? value[i] : low;
+    high = value[i] > high ? value[i] : high;
+  }
+  box->low[axis] = low;
+  box->high[axis] = high;
+}
+
 // ---- Predict ---------------------------------------------------------------------------------------------------------
 
 // A push is full on its ray and falls off smoothly (1 − smoothstep) to nothing at its radius.
@@ -46,25 +67,41 @@ static void add_push(const SimPush *push, const float point[3], float accelerati
   for (int k = 0; k < 3; k++) acceleration[k] += share * push->acceleration[k];
 }
 
-static void predict_kernel(int32_t begin, int32_t end, const void *context) {
-  const SimStep *step = context;
+// Where the particles would go if nothing were in the way, into the axes; *box is the box around all these ways.
+static void fly(const SimStep *step, int32_t begin, int32_t end, float *const axes[3], Box *box) {
   SimSorted *now = &step->particles->now;
-  float *axes[3];
-  sim_particles_second_as_axes(step->particles, axes);
   for (int32_t i = begin; i < end; i++) {
-    float from[3], to[3], acceleration[3] = {step->gravity[0], step->gravity[1], step->gravity[2]};
+    float from[3], acceleration[3] = {step->gravity[0], step->gravity[1], step->gravity[2]};
     for (int k = 0; k < 3; k++) from[k] = now->position[k][i];
     for (int32_t p = 0; p < step->push_count; p++) add_push(&step->pushes[p], from, acceleration);
     for (int k = 0; k < 3; k++) {
       float v = now->velocity[k][i] + step->dt * acceleration[k];
       now->next_velocity[k][i] = v;
-      to[k] = from[k] + step->dt * v;
+      axes[k][i] = from[k] + step->dt * v;
     }
-    const float free[3] = {to[0], to[1], to[2]};
-    sim_boundary_clamp(step->boundary, from, to);
+  }
+  for (int k = 0; k < 3; k++) {
+    box_add(box, k, now->position[k] + begin, end - begin);
+    box_add(box, k, axes[k] + begin, end - begin);
+  }
+}
+
+static void predict_kernel(int32_t begin, int32_t end, const void *context) {
+  const SimStep *step = context;
+  SimSorted *now = &step->particles->now;
+  Box box = box_empty();
+  SimNear near;
+  float *axes[3];
+  sim_particles_second_as_axes(step->particles, axes);
+  fly(step, begin, end, axes, &box);
+  if (!sim_boundary_select(step->boundary, box.low, box.high, 0, &near)) return;
+  for (int32_t i = begin; i < end; i++) {
+    float from[3], to[3];
+    for (int k = 0; k < 3; k++) from[k] = now->position[k][i], to[k] = axes[k][i];
+    sim_boundary_clamp(step->boundary, &near, from, to);
     for (int k = 0; k < 3; k++) {
+      if (to[k] != axes[k][i]) now->next_velocity[k][i] += (to[k] - axes[k][i]) * step->inverse_dt;
       axes[k][i] = to[k];
-      if (to[k] != free[k]) now->next_velocity[k][i] += (to[k] - free[k]) * step->inverse_dt;
     }
   }
 }
@@ -82,25 +119,26 @@ static bool narrow_container(const SimBoundary *boundary) {
   return narrow;
 }
 
-// What is in reach of each chunk, also after the moves that lists survive.
+// What is in reach of each chunk, also after the moves that lists survive. A NaN is in reach of everything.
 static void near_kernel(int32_t begin, int32_t end, const void *context) {
   const SimStep *step = context;
   const SimBoundary *boundary = step->boundary;
-  const SimContainer *box = &boundary->container;
-  float margin = 0.5f * step->cubic.h, reach = boundary->wall.reach + margin;
+  SimParticles *p = step->particles;
   bool narrow = narrow_container(boundary);
   for (int32_t first = begin; first < end; first += SIM_CHUNK) {
-    float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
-    for (int32_t i = first; i < end && i < first + SIM_CHUNK; i++)
-      for (int k = 0; k < 3; k++) {
-        float x = step->particles->first[4 * (size_t)i + k];
-        low[k] = x < low[k] ? x : low[k];
-        high[k] = x > high[k] ? x : high[k];
-      }
-    bool wall = false;
-    for (int k = 0; k < 3; k++) wall = wall || !(low[k] >= box->min[k] + reach && high[k] <= box->max[k] - reach);
-    bool body = (wall && narrow) || (boundary->body_count > 0 && sim_boundary_near_box(boundary, low, high, margin));
-    step->particles->near[first / SIM_CHUNK] = body ? SIM_NEAR_BODY : wall ? SIM_NEAR_WALL : 0;
+    int32_t count = end - first < SIM_CHUNK ? end - first : SIM_CHUNK;
+    Box box = box_empty();
+    SimNear near;
+    float *axes[3];
+    sim_particles_second_as_axes(p, axes);
+    for (int k = 0; k < 3; k++) {
+      box_add(&box, k, p->now.position[k] + first, count);
+      box_add(&box, k, axes[k] + first, count);
+    }
+    uint8_t found = 0;
+    if (sim_boundary_select(boundary, box.low, box.high, 0.5f * step->cubic.h, &near))
+      found = near.count != 0 || narrow ? SIM_NEAR_BODY : SIM_NEAR_WALL;
+    p->near[first / SIM_CHUNK] = found;
   }
 }
 

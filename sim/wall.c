@@ -16,6 +16,17 @@ static double half_lattice(double s, double spacing, double h) {
   return sum;
 }
 
+// V Σ W x² over the whole lattice.
+static double second_moment(double spacing, double h, double volume) {
+  int reach = (int)ceil(h / spacing);
+  double sum = 0;
+  for (int k = -reach; k <= reach; k++)
+    for (int j = -reach; j <= reach; j++)
+      for (int i = -reach; i <= reach; i++)
+        sum += sim_kernel_cubic(spacing * sqrt(i * i + j * j + k * k), h) * spacing * spacing * i * i;
+  return volume * sum;
+}
+
 // At the surface itself the half lattice gives not quite one half. It is blended so that f(0) = ½ and both sides meet;
 // from a quarter of a spacing on it is untouched.
 static double share_at(double s, double spacing, double h, double volume) {
@@ -29,11 +40,13 @@ void sim_wall_make(SimWall *wall, const SimCubic *cubic) {
   double spacing = cubic->spacing, h = cubic->h, reach = h - spacing / 2, step = reach / SIM_WALL_STEPS;
   wall->reach = (float)reach;
   wall->inverse_step = (float)(1 / step);
+  wall->spacing = (float)spacing;
+  wall->spread = (float)second_moment(spacing, h, cubic->volume);
   for (int k = 0; k <= SIM_WALL_STEPS + 1; k++) {
     double s = k * step, e = step / 2;
     wall->share[k] = (float)share_at(s, spacing, h, cubic->volume);
-    wall->slope[k] =
-        (float)((share_at(s + e, spacing, h, cubic->volume) - share_at(fabs(s - e), spacing, h, cubic->volume)) /
-                (s < e ? e : 2 * e));
+    double above = share_at(s + e, spacing, h, cubic->volume),
+           below = s < e ? 1 - share_at(e - s, spacing, h, cubic->volume) : share_at(s - e, spacing, h, cubic->volume);
+    wall->slope[k] = (float)((above - below) / (2 * e));
   }
 }

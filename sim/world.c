@@ -48,18 +48,48 @@ static bool copy_array(void **copy, const void *source, int32_t count, size_t el
   return *copy != NULL;
 }
 
+// Obstacles that name the same mesh share one copy and one grid.
+static bool copy_meshes(SimWorld *world, const SimWorldDef *def) {
+  for (int32_t b = 0; b < def->obstacle_count; b++) {
+    const SimObstacle *obstacle = &def->obstacles[b].body;
+    if (obstacle->shape != SIM_MESH) continue;
+    for (int32_t other = 0; other < b && !world->meshes[b]; other++)
+      if (world->meshes[other] && def->obstacles[other].body.mesh == obstacle->mesh)
+        world->meshes[b] = world->meshes[other];
+    if (!world->meshes[b])
+      world->meshes[b] = sim_mesh_distance_create(obstacle->mesh, &world->boundary.wall, world->threads);
+    if (!world->meshes[b]) return false;
+  }
+  return true;
+}
+
+static void free_meshes(SimWorld *world) {
+  for (int32_t b = 0; world->meshes && b < world->def.obstacle_count; b++) {
+    SimMeshDistance *mesh = world->meshes[b];
+    for (int32_t other = b; other < world->def.obstacle_count; other++)
+      if (world->meshes[other] == mesh) world->meshes[other] = NULL;
+    sim_mesh_distance_destroy(mesh);
+  }
+  sim_release(world->meshes);
+}
+
 static bool copy_def(SimWorld *world, const SimWorldDef *def) {
   world->def = *def;
   if (!copy_array((void **)&world->blocks, def->blocks, def->block_count, sizeof(SimBlockDef)) ||
       !copy_array((void **)&world->obstacle_defs, def->obstacles, def->obstacle_count, sizeof(SimObstacleDef)) ||
       !(world->obstacles = sim_allocate((size_t)def->obstacle_count * sizeof(SimObstacle))) ||
-      !(world->bodies = sim_allocate((size_t)def->obstacle_count * sizeof(SimBody))))
+      !(world->bodies = sim_allocate((size_t)def->obstacle_count * sizeof(SimBody))) ||
+      !(world->meshes = sim_allocate((size_t)def->obstacle_count * sizeof(SimMeshDistance *))) ||
+      !copy_meshes(world, def))
     return false;
   world->def.blocks = world->blocks;
   world->def.obstacles = world->obstacle_defs;
   for (int32_t b = 0; b < def->obstacle_count; b++) {
-    world->obstacles[b] = def->obstacles[b].body;
-    world->bodies[b] = sim_body_make(&def->obstacles[b].body);
+    SimObstacle *obstacle = &world->obstacle_defs[b].body;
+    obstacle->mesh = world->meshes[b] ? &world->meshes[b]->mesh : NULL;
+    world->obstacles[b] = *obstacle;
+    world->bodies[b] = sim_body_make(obstacle, world->meshes[b]);
+    world->bodies[b].friction = def->obstacles[b].friction;
   }
   return true;
 }
@@ -102,21 +132,26 @@ static bool start(SimWorld *world, SimError *error) {
 SimWorld *sim_world_create(const SimWorldDef *def, SimError *error) {
   if (!sim_def_check(def, error)) return NULL;
   SimWorld *world = sim_allocate(sizeof *world);
-  if (!world || !copy_def(world, def)) {
+  if (!world) {
     sim_fail(error, "out of memory");
-    sim_world_destroy(world);
     return NULL;
   }
   world->threads = sim_parallel_threads(def->threads);
   world->wide = sim_wide();
   world->method = sim_method(def->solver);
   world->cubic = sim_cubic_make(2 * def->particle_radius, def->support);
-  world->boundary = (SimBoundary){.container = def->container,
-                                  .clearance = def->particle_radius,
-                                  .body_count = def->obstacle_count,
-                                  .bodies = world->bodies};
   sim_wall_make(&world->boundary.wall, &world->cubic);
   sim_wall_table_make(&world->wall, &world->boundary.wall);
+  if (!copy_def(world, def)) {
+    sim_fail(error, "out of memory");
+    sim_world_destroy(world);
+    return NULL;
+  }
+  world->boundary.container = def->container;
+  world->boundary.friction = def->container_friction;
+  world->boundary.clearance = def->particle_radius;
+  world->boundary.body_count = def->obstacle_count;
+  world->boundary.bodies = world->bodies;
   if (!start(world, error)) {
     sim_world_destroy(world);
     return NULL;
@@ -137,6 +172,7 @@ void sim_world_destroy(SimWorld *world) {
   sim_release(world->obstacles);
   sim_release(world->obstacle_defs);
   sim_release(world->bodies);
+  free_meshes(world);
   sim_release(world);
 }
 

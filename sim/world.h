@@ -13,6 +13,7 @@ struct SimWorld {
   SimObstacleDef *obstacle_defs;
   SimObstacle *obstacles;      ///< with their present poses
   SimBody *bodies;
+  SimMeshDistance **meshes;    ///< (obstacle_count), of the obstacles that are meshes; equal ones share one
   int32_t threads;
   const SimWide *wide;
   const SimMethod *method;

@@ -2,6 +2,7 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "sim/mesh_topology.h"
 #include "sim/world.h"
 
 SimObstacleDef sim_default_obstacle_def(void) {
@@ -58,12 +59,15 @@ static bool check_numbers(const SimWorldDef *def, SimError *error) {
          in_range("cfl", def->cfl, 0.05f, 2, error) && in_range("viscosity", def->viscosity, 0, 0.5f, error) &&
          in_range("relaxation", def->relaxation, 1e-3f, 10, error) &&
          in_range("tensile", def->tensile, 0, 0.1f, error) && in_range("jitter", def->jitter, 0, 0.5f, error) &&
+         in_range("container_friction", def->container_friction, 0, 1, error) &&
          finite_vector("gravity", def->gravity, 1e4f, error);
 }
 
 static bool check_container(const SimWorldDef *def, SimError *error) {
   float spacing = 2 * def->particle_radius;
   const SimContainer *box = &def->container;
+  if (box->shape != SIM_CONTAINER_BOX && box->shape != SIM_CONTAINER_GLASS)
+    return sim_fail(error, "container: unknown shape %d", (int)box->shape);
   if (!finite_vector("container.min", box->min, MAX_COORDINATE * spacing, error) ||
       !finite_vector("container.max", box->max, MAX_COORDINATE * spacing, error))
     return false;
@@ -90,20 +94,49 @@ bool sim_block_check(const SimBlockDef *block, const char *name, SimError *error
   return true;
 }
 
-static bool check_obstacle(const SimObstacle *obstacle, int32_t index, SimError *error) {
-  char name[64];
+static bool check_size(const SimObstacle *obstacle, const char *name, SimError *error) {
+  static const int sizes[SIM_SHAPE_COUNT] = {
+      [SIM_BOX] = 3, [SIM_SPHERE] = 1, [SIM_CYLINDER] = 2, [SIM_CAPSULE] = 2, [SIM_STAIRS] = 3, [SIM_MESH] = 0};
+  for (int k = 0; k < sizes[obstacle->shape]; k++)
+    if (!(obstacle->size[k] > 0 && obstacle->size[k] <= 1e6f))
+      return sim_fail(error, "%s: size must be in (0, 1e6] m, got %g", name, (double)obstacle->size[k]);
+  if (obstacle->shape == SIM_CAPSULE && !(obstacle->size[1] >= obstacle->size[0]))
+    return sim_fail(error, "%s: a capsule must be at least as high as it is wide, %g m, got %g m", name,
+                    (double)obstacle->size[0], (double)obstacle->size[1]);
+  if (obstacle->shape == SIM_STAIRS && (obstacle->steps < 1 || obstacle->steps > 1000))
+    return sim_fail(error, "%s: steps must be in [1, 1000], got %d", name, obstacle->steps);
+  return true;
+}
+
+static bool check_obstacle(const SimObstacleDef *def, int32_t index, SimError *error) {
+  char name[64], field[80];
+  const SimObstacle *obstacle = &def->body;
   snprintf(name, sizeof name, "obstacles[%d]", index);
-  if ((int)obstacle->shape < SIM_BOX || obstacle->shape > SIM_CYLINDER)
+  if ((int)obstacle->shape < 0 || obstacle->shape >= SIM_SHAPE_COUNT)
     return sim_fail(error, "%s: unknown shape %d", name, (int)obstacle->shape);
   if (!finite_vector(name, obstacle->position, 1e6f, error) || !finite_vector(name, obstacle->rotation, 1e6f, error))
     return false;
-  int sizes = obstacle->shape == SIM_BOX ? 3 : obstacle->shape == SIM_SPHERE ? 1 : 2;
-  for (int k = 0; k < sizes; k++)
-    if (!(obstacle->size[k] > 0 && obstacle->size[k] <= 1e6f))
-      return sim_fail(error, "%s: size must be in (0, 1e6] m, got %g", name, (double)obstacle->size[k]);
+  if (!check_size(obstacle, name, error)) return false;
   const float *q = obstacle->rotation;
   if (!(fabsf(q[0]) + fabsf(q[1]) + fabsf(q[2]) + fabsf(q[3]) > 1e-6f) || !isfinite(q[3]))
     return sim_fail(error, "%s: rotation must be a quaternion that is not zero", name);
+  snprintf(field, sizeof field, "%s.friction", name);
+  return in_range(field, def->friction, 0, 1, error);
+}
+
+// Obstacles that name the same mesh are checked once.
+static bool check_meshes(const SimWorldDef *def, SimError *error) {
+  for (int32_t b = 0; b < def->obstacle_count; b++) {
+    char name[64];
+    bool seen = false;
+    const SimObstacle *obstacle = &def->obstacles[b].body;
+    if (obstacle->shape != SIM_MESH) continue;
+    snprintf(name, sizeof name, "obstacles[%d]", b);
+    if (!obstacle->mesh) return sim_fail(error, "%s: a mesh without triangles", name);
+    for (int32_t other = 0; other < b && !seen; other++)
+      seen = def->obstacles[other].body.shape == SIM_MESH && def->obstacles[other].body.mesh == obstacle->mesh;
+    if (!seen && !sim_mesh_check(obstacle->mesh, name, error)) return false;
+  }
   return true;
 }
 
@@ -121,6 +154,6 @@ bool sim_def_check(const SimWorldDef *def, SimError *error) {
     if (!sim_block_check(&def->blocks[b], name, error)) return false;
   }
   for (int32_t b = 0; b < def->obstacle_count; b++)
-    if (!check_obstacle(&def->obstacles[b].body, b, error)) return false;
-  return true;
+    if (!check_obstacle(&def->obstacles[b], b, error)) return false;
+  return check_meshes(def, error);
 }

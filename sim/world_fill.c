@@ -103,7 +103,7 @@ int32_t sim_fill_block(SimWorld *world, const SimBlockDef *block, bool start, Si
         float from[3] = {point[0], point[1], point[2]};
         for (int k = 0; k < 3 && jitter > 0; k++)
           point[k] += jitter * random_share(world->def.seed, (uint64_t)world->particles.count, (uint64_t)k);
-        sim_boundary_clamp(&world->boundary, from, point);
+        sim_boundary_clamp(&world->boundary, NULL, from, point);
         add(world, block, point);
       }
   if (block->colour[0] != 0 || block->colour[1] != 0 || block->colour[2] != 0) world->coloured = true;

@@ -30,10 +30,35 @@ static void box_solid(const SimStep *step, const SimF own[4], SimF solid[4]) {
   solid[3] = sim_f(1) - share[0] * share[1] * share[2];
 }
 
-static void bodies_solid(const SimStep *step, int32_t i, float *solid) {
-  for (int32_t k = i; k < i + SIM_LANES && k < step->particles->count; k++, solid += 4) {
+// The bodies to look at between `from` and `to`; NULL, all of them, where there are so few that choosing is dearer.
+#define FEW_BODIES 4
+static const SimNear *choose(const SimBoundary *boundary, const SimF from[3], const SimF to[3], int32_t count,
+                             SimNear *near) {
+  if (boundary->body_count <= FEW_BODIES) return NULL;
+  float low[3], high[3];
+  for (int k = 0; k < 3; k++) {
+    float a[SIM_LANES], b[SIM_LANES];
+    sim_store(a, sim_min(from[k], to[k]));
+    sim_store(b, sim_max(from[k], to[k]));
+    low[k] = a[0], high[k] = b[0];
+    for (int32_t lane = 1; lane < SIM_LANES && lane < count; lane++) {
+      low[k] = a[lane] < low[k] ? a[lane] : low[k];
+      high[k] = b[lane] > high[k] ? b[lane] : high[k];
+    }
+  }
+  sim_boundary_select(boundary, low, high, 0, near);
+  return near;
+}
+
+static void bodies_solid(const SimStep *step, int32_t i, const SimF own[4], float *solid) {
+  SimNear chosen;
+  const SimNear *near = choose(step->boundary, own, own, step->particles->count - i, &chosen);
+  float lane[3][SIM_LANES];
+  for (int k = 0; k < 3; k++) sim_store(lane[k], own[k]);
+  for (int32_t k = 0; k < SIM_LANES && i + k < step->particles->count; k++, solid += 4) {
+    const float point[3] = {lane[0][k], lane[1][k], lane[2][k]};
     SimSolid found;
-    sim_boundary_solid(step->boundary, step->particles->first + 4 * (size_t)k, &found);
+    sim_boundary_solid(step->boundary, near, point, &found);
     for (int a = 0; a < 3; a++) solid[a] = found.gradient[a];
     solid[3] = found.share;
   }
@@ -44,7 +69,7 @@ void WIDE(sim_wall_solid)(const SimStep *step, int32_t i, const SimF own[4], Sim
   uint8_t near = step->particles->near[i / SIM_CHUNK];
   for (int k = 0; k < 4; k++) solid[k] = sim_f(0);
   if (near & SIM_NEAR_BODY) {
-    bodies_solid(step, i, to);
+    bodies_solid(step, i, own, to);
     sim_load4(to, solid);
   } else if (near & SIM_NEAR_WALL) {
     box_solid(step, own, solid);
@@ -54,12 +79,16 @@ void WIDE(sim_wall_solid)(const SimStep *step, int32_t i, const SimF own[4], Sim
 
 static void clamp_to_bodies(const SimStep *step, int32_t i, SimF to[3]) {
   const SimParticles *p = step->particles;
+  SimF start[3];
+  SimNear chosen;
   float lane[3][SIM_LANES];
+  for (int k = 0; k < 3; k++) start[k] = sim_load(p->now.position[k] + i);
+  const SimNear *near = choose(step->boundary, start, to, p->count - i, &chosen);
   for (int k = 0; k < 3; k++) sim_store(lane[k], to[k]);
   for (int32_t k = 0; k < SIM_LANES && i + k < p->count; k++) {
     float from[3], place[3];
     for (int a = 0; a < 3; a++) from[a] = p->now.position[a][i + k], place[a] = lane[a][k];
-    sim_boundary_clamp(step->boundary, from, place);
+    sim_boundary_clamp(step->boundary, near, from, place);
     for (int a = 0; a < 3; a++) lane[a][k] = place[a];
   }
   for (int k = 0; k < 3; k++) to[k] = sim_load(lane[k]);

@@ -5,7 +5,7 @@
 
 static float share_at(const SimBoundary *boundary, const float point[3], float gradient[3]) {
   SimSolid solid;
-  sim_boundary_solid(boundary, point, &solid);
+  sim_boundary_solid(boundary, NULL, point, &solid);
   memcpy(gradient, solid.gradient, sizeof solid.gradient);
   return solid.share;
 }
@@ -63,7 +63,7 @@ static void check_gradient(const SimBoundary *boundary, const float point[3]) {
 
 static SimBody make_body(SimShape shape, float a, float b, float c) {
   SimObstacle obstacle = {shape, {a, b, c}, {0.5f, 0.45f, 0.55f}, {0.3f, -0.2f, 0.1f, 0.9f}, {0, 0, 0}};
-  return sim_body_make(&obstacle);
+  return sim_body_make(&obstacle, NULL);
 }
 
 static void gradients_match_difference_quotients(void **state) {
@@ -126,7 +126,7 @@ static void clamp_keeps_everything_inside(void **state) {
       for (int k = 0; k < 3; k++) from[k] = 0.025f + 0.95f * (float)test_random(&seed);
     while (!sim_boundary_free(&boundary, from));
     for (int k = 0; k < 3; k++) to[k] = (float)(8 * test_random(&seed) - 4);
-    sim_boundary_clamp(&boundary, from, to);
+    sim_boundary_clamp(&boundary, NULL, from, to);
     for (int k = 0; k < 3; k++) assert_true(to[k] >= 0.0249f && to[k] <= 0.9751f);
     assert_true(sim_body_distance(&sphere, to, normal) > 0.9f * 0.025f);
   }
@@ -136,11 +136,11 @@ static void clamp_keeps_everything_inside(void **state) {
 static void thin_obstacles_are_not_jumped(void **state) {
   (void)state;
   SimObstacle sheet = {SIM_BOX, {0.001f, 4, 4}, {0.5f, 0.5f, 0.5f}, {0, 0, 0, 1}, {0, 0, 0}};
-  SimBody body = sim_body_make(&sheet);
+  SimBody body = sim_body_make(&sheet, NULL);
   SimBoundary boundary = box(1, &body, 1);
   for (int n = 0; n < 100; n++) {
     float from[3] = {0.47f - 0.004f * (float)n, 0.5f, 0.5f}, to[3] = {0.9f, 0.5f + 0.004f * (float)n, 0.5f};
-    sim_boundary_clamp(&boundary, from, to);
+    sim_boundary_clamp(&boundary, NULL, from, to);
     assert_true(to[0] < 0.5f);
   }
 }
@@ -149,10 +149,10 @@ static void thin_obstacles_are_not_jumped(void **state) {
 static void a_wedge_holds(void **state) {
   (void)state;
   SimObstacle block = {SIM_BOX, {0.4f, 0.4f, 0.4f}, {0.5f, 0.21f, 0.5f}, {0, 0, 0, 1}, {0, 0, 0}};
-  SimBody body = sim_body_make(&block);
+  SimBody body = sim_body_make(&block, NULL);
   SimBoundary boundary = box(1, &body, 1);
   float from[3] = {0.27f, 0.025f, 0.5f}, to[3] = {0.5f, 0.004f, 0.5f}, normal[3];
-  sim_boundary_clamp(&boundary, from, to);
+  sim_boundary_clamp(&boundary, NULL, from, to);
   assert_true(sim_body_distance(&body, to, normal) >= 0);
 }
 

@@ -111,6 +111,43 @@ static void bad_obstacles_are_refused(void **state) {
   refused(&def, "obstacles[0]");
 }
 
+static void bad_shapes_and_frictions_are_refused(void **state) {
+  (void)state;
+  SimObstacleDef solid = sim_default_obstacle_def();
+  SimWorldDef def = small_def();
+  def.obstacle_count = 1;
+  def.obstacles = &solid;
+  const float frictions[3] = {-0.1f, 1.1f, NAN};
+  for (int k = 0; k < 3; k++) {
+    solid.friction = frictions[k];
+    refused(&def, "obstacles[0].friction");
+    def.container_friction = frictions[k];
+    solid.friction = 0;
+    refused(&def, "container_friction");
+    def.container_friction = 0;
+  }
+  solid.body.shape = SIM_STAIRS, solid.body.steps = 0;
+  refused(&def, "obstacles[0]: steps");
+  solid.body.steps = 1001;
+  refused(&def, "obstacles[0]: steps");
+  solid.body.shape = SIM_CAPSULE, solid.body.size[0] = 2;
+  refused(&def, "obstacles[0]: a capsule");
+  solid.body.shape = SIM_MESH;
+  refused(&def, "obstacles[0]: a mesh");
+  // An open mesh; what is wrong with meshes otherwise, test_mesh knows.
+  const float vertex[4][3] = {{0, 0, 0}, {0, 1, 0}, {1, 0, 0}, {1, 0, 1}};
+  const int32_t triangle[4][3] = {{0, 1, 2}, {0, 2, 3}, {1, 3, 2}, {0, 2, 1}};
+  SimMesh mesh = {4, 4, vertex[0], triangle[0]};
+  solid.body.mesh = &mesh;
+  refused(&def, "obstacles[0]: mesh");
+  def.obstacle_count = 0;
+  def.container.shape = (SimContainerShape)2;
+  refused(&def, "container: unknown shape");
+  def.container.shape = SIM_CONTAINER_GLASS;
+  def.container.max[2] = 0.04f; // less than a spacing
+  refused(&def, "container must be at least one spacing");
+}
+
 // Far more particles than are allowed: refused at once, without trying.
 static void huge_counts_are_refused(void **state) {
   (void)state;
@@ -415,6 +452,7 @@ int main(void) {
       cmocka_unit_test(numbers_out_of_range_are_refused),
       cmocka_unit_test(bad_blocks_are_refused),
       cmocka_unit_test(bad_obstacles_are_refused),
+      cmocka_unit_test(bad_shapes_and_frictions_are_refused),
       cmocka_unit_test(huge_counts_are_refused),
       cmocka_unit_test(an_empty_world_runs),
       cmocka_unit_test(one_particle_falls_to_the_floor),
