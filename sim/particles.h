@@ -10,11 +10,13 @@ typedef struct SimSorted {
   float *velocity[3];      ///< m/s, likewise; both change only when a substep has succeeded
   float *predicted[3];     ///< m, written by predict, corrected by the solver
   float *next_velocity[3]; ///< m/s, written by predict, correct and viscosity
-  uint32_t *id;
+  float *colour[3];        ///< linear light, written by particles_add; only where `coloured` is set
+  uint32_t *id;            ///< unique, written by particles_add
 } SimSorted;
 
 typedef struct SimParticles {
   int32_t count, capacity;
+  bool coloured;           ///< colours are held and follow the particles
   SimSorted now, spare;    ///< the sort gathers from one into the other and swaps them
   // Work arrays, (count), in the present order.
   float *scratch[3];       ///< new positions or velocities of a Jacobi sweep
@@ -31,7 +33,18 @@ bool sim_particles_reserve(SimParticles *particles, int32_t capacity);
 void sim_particles_free(SimParticles *particles);
 
 /// Append a particle at rest in the solver's eyes (predicted = position). There must be room.
-void sim_particles_add(SimParticles *particles, uint32_t id, const float position[3], const float velocity[3]);
+void sim_particles_add(SimParticles *particles, uint32_t id, const float position[3], const float velocity[3],
+                       const float colour[3]);
+
+/// Hold colours from now on; the particles that are there get the given one. false when memory runs out.
+bool sim_particles_colour(SimParticles *particles, const float colour[3]);
+
+/// Every array that follows a particle, all of them of 32-bit words: the one list that sorting and removal go by.
+#define SIM_SORTED_ARRAYS 16
+int32_t sim_particles_list(SimSorted *sorted, bool coloured, void **list[SIM_SORTED_ARRAYS]);
+
+/// Take away the particles whose flag is set, (count); the others keep their order (particles_remove.c).
+void sim_particles_remove(SimParticles *particles, const uint8_t *gone);
 
 /// Sort everything in `now` by the cells of the given positions (one of its own arrays).
 bool sim_particles_sort(SimParticles *particles, SimCellSort *sort, float *const by[3], float cell_size, int32_t threads);

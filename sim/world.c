@@ -52,11 +52,17 @@ static bool copy_array(void **copy, const void *source, int32_t count, size_t el
 static bool copy_def(SimWorld *world, const SimWorldDef *def) {
   world->def = *def;
   if (!copy_array((void **)&world->blocks, def->blocks, def->block_count, sizeof(SimBlockDef)) ||
+      !copy_array((void **)&world->drops, def->drops, def->drop_count, sizeof(SimDropDef)) ||
+      !copy_array((void **)&world->emitter_defs, def->emitters, def->emitter_count, sizeof(SimEmitterDef)) ||
+      !copy_array((void **)&world->sinks, def->sinks, def->sink_count, sizeof(SimSinkDef)) ||
       !copy_array((void **)&world->obstacle_defs, def->obstacles, def->obstacle_count, sizeof(SimObstacleDef)) ||
       !(world->obstacles = sim_allocate((size_t)def->obstacle_count * sizeof(SimObstacle))) ||
       !(world->bodies = sim_allocate((size_t)def->obstacle_count * sizeof(SimBody))))
     return false;
   world->def.blocks = world->blocks;
+  world->def.drops = world->drops;
+  world->def.emitters = world->emitter_defs;
+  world->def.sinks = world->sinks;
   world->def.obstacles = world->obstacle_defs;
   for (int32_t b = 0; b < def->obstacle_count; b++) {
     world->obstacles[b] = def->obstacles[b].body;
@@ -77,10 +83,23 @@ void sim_world_raise_speed_limit(SimWorld *world) {
   world->speed_limit = fmaxf(world->speed_limit, limit);
 }
 
-// Everything back to the start; the particles are those of the blocks.
+static bool is_coloured(const float colour[3]) {
+  return colour[0] != 0 || colour[1] != 0 || colour[2] != 0;
+}
+
+static bool any_colour(const SimWorldDef *def) {
+  bool any = false;
+  for (int32_t b = 0; b < def->block_count; b++) any = any || is_coloured(def->blocks[b].colour);
+  for (int32_t d = 0; d < def->drop_count; d++) any = any || is_coloured(def->drops[d].colour);
+  for (int32_t e = 0; e < def->emitter_count; e++) any = any || is_coloured(def->emitters[e].colour);
+  return any;
+}
+
+// Everything back to the start; the particles are those of the blocks and drops.
 static bool start(SimWorld *world, SimError *error) {
   world->particles.count = 0;
-  world->coloured = false;
+  world->particles.coloured = false;
+  world->next_id = world->start_count = 0;
   memcpy(world->gravity, world->def.gravity, sizeof world->gravity);
   world->push_count = 0;
   world->time = 0;
@@ -89,8 +108,17 @@ static bool start(SimWorld *world, SimError *error) {
   world->counts = (SimCounts){0};
   world->speed_limit = 0;
   sim_world_raise_speed_limit(world);
+  for (int32_t e = 0; e < world->def.emitter_count; e++)
+    world->speed_limit = fmaxf(world->speed_limit, 10 * world->emitter_defs[e].speed);
+  sim_emitters_reset(&world->emitters);
+  if (!sim_world_reserve(world, error)) return false;
+  if (any_colour(&world->def) && !sim_particles_colour(&world->particles, sim_water_colour))
+    return sim_fail(error, "out of memory");
   for (int32_t b = 0; b < world->def.block_count; b++)
     if (sim_fill_block(world, &world->blocks[b], true, error) < 0) return false;
+  for (int32_t d = 0; d < world->def.drop_count; d++)
+    if (sim_fill_drop(world, &world->drops[d], true, error) < 0) return false;
+  world->start_count = world->next_id;
   return sim_world_settle(world, error);
 }
 
@@ -109,6 +137,11 @@ SimWorld *sim_world_create(const SimWorldDef *def, SimError *error) {
                                   .body_count = def->obstacle_count,
                                   .bodies = world->bodies};
   sim_wall_make(&world->boundary.wall, &world->cubic);
+  if (!sim_emitters_make(&world->emitters, world->emitter_defs, def->emitter_count, world->cubic.spacing)) {
+    sim_fail(error, "out of memory");
+    sim_world_destroy(world);
+    return NULL;
+  }
   if (!start(world, error)) {
     sim_world_destroy(world);
     return NULL;
@@ -124,8 +157,12 @@ void sim_world_destroy(SimWorld *world) {
   sim_grid_free(&world->fill_sort);
   sim_neighbours_free(&world->neighbours);
   for (int k = 0; k < 3; k++) sim_release(world->fill_position[k]);
-  sim_release(world->colour);
+  sim_emitters_free(&world->emitters);
+  sim_release(world->gone);
   sim_release(world->blocks);
+  sim_release(world->drops);
+  sim_release(world->emitter_defs);
+  sim_release(world->sinks);
   sim_release(world->obstacles);
   sim_release(world->obstacle_defs);
   sim_release(world->bodies);
@@ -283,17 +320,19 @@ static bool substep(SimWorld *world, float dt, SimError *error) {
   lap(world, SIM_STAGE_viscosity, &since);
 
   commit(world, dt);
-  return true;
+  return sim_swallow(world, error) && sim_emit(world, error);
 }
 
-// The longest substep allowed now: the CFL condition on the fastest particle (including what it will gain), the bound
+// The longest substep allowed now: the CFL condition on the fastest particle (of the water or from an
+// emitter, including what it will gain), the bound
 // from rest, the Def's time step.
 static double longest_substep(const SimWorld *world) {
   double spacing = (double)world->cubic.spacing, pull = (double)length3(world->gravity);
   for (int32_t p = 0; p < world->push_count; p++) pull += (double)length3(world->pushes[p].acceleration);
   double longest = pull > 0 ? sqrt((double)REST_MOVE * spacing / pull) : 1.0 / 60;
   if (world->def.time_step > 0 && (double)world->def.time_step < longest) longest = (double)world->def.time_step;
-  double speed = (double)largest_speed(world, world->particles.now.velocity) + pull * longest;
+  float fastest = fmaxf(largest_speed(world, world->particles.now.velocity), sim_emit_speed(world, longest));
+  double speed = (double)fastest + pull * longest;
   double cfl = speed > 0 ? (double)world->def.cfl * spacing / speed : longest;
   return fmin(longest, cfl);
 }
