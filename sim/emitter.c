@@ -15,9 +15,15 @@
 // farther ahead, so that the stream has neither gaps nor bunches whatever the substeps. (What gravity does to it within τ
 // is left out: at most REST_MOVE of world.c, in spacings.)
 //
-// Free places. A place stays empty when it touches a wall or a body or is nearer than 0.9 spacings to a particle. The
-// emitter's own previous layer only counts below half a pitch: a stream that rises slows down, and is pushed on by what
-// follows. A body that carries an emitter feels no recoil.
+// Guidance. The last layer would be a free surface, with nothing behind that holds it, as the water in a pipe does: the
+// solver pushes it back (the artificial pressure alone takes half its speed), the next one finds its places taken, and the
+// stream is torn. So as long as a layer is nearer to the opening than the support radius, its particles are put back at the
+// end of each substep to where the stream should be, with the stream's velocity: a piston. Released layers have all their
+// neighbours, at their places. (Tafuni et al., A versatile algorithm for the treatment of open boundary conditions in
+// smoothed particle hydrodynamics GPU models, 2018, hold the layers of an inflow likewise, but outside of the domain.)
+//
+// Free places. A place stays empty when it touches a wall or a body or is nearer than 0.9 spacings to a particle that is
+// not guided. A guided particle whose place a body takes is left to itself. A body that carries an emitter feels no recoil.
 #include "sim/emitter.h"
 
 #include <math.h>
@@ -28,8 +34,6 @@
 
 // A place nearer than this to a particle, in spacings, stays empty.
 #define TOO_NEAR 0.9f
-// The same for particles of the previous layer, in pitches.
-#define PREVIOUS_TOO_NEAR 0.5f
 
 SimEmitterDef sim_default_emitter_def(void) {
   return (SimEmitterDef){.shape = SIM_EMITTER_DISC,
@@ -115,7 +119,17 @@ static bool make_places(SimEmitter *emitter, const SimEmitterDef *def, float spa
   return true;
 }
 
-bool sim_emitters_make(SimEmitters *emitters, const SimEmitterDef *defs, int32_t count, float spacing) {
+static bool make_layers(SimEmitter *emitter, float support) {
+  emitter->layer_room = (int32_t)ceilf(support / emitter->pitch) + 1;
+  emitter->layer = sim_allocate((size_t)emitter->layer_room * sizeof(SimLayer));
+  for (int32_t k = 0; emitter->layer && k < emitter->layer_room; k++) {
+    emitter->layer[k].place = sim_allocate(sizeof(int32_t) * (size_t)emitter->place_count);
+    if (!emitter->layer[k].place) return false;
+  }
+  return emitter->layer != NULL;
+}
+
+bool sim_emitters_make(SimEmitters *emitters, const SimEmitterDef *defs, int32_t count, float spacing, float support) {
   size_t places = 0, cells = 0;
   if (count == 0) return true;
   emitters->emitter = sim_allocate((size_t)count * sizeof(SimEmitter));
@@ -123,7 +137,7 @@ bool sim_emitters_make(SimEmitters *emitters, const SimEmitterDef *defs, int32_t
   emitters->count = count;
   for (int32_t e = 0; e < count; e++) {
     SimEmitter *emitter = &emitters->emitter[e];
-    if (!make_places(emitter, &defs[e], spacing)) return false;
+    if (!make_places(emitter, &defs[e], spacing) || !make_layers(emitter, support)) return false;
     size_t own = (size_t)emitter->cells[0] * (size_t)emitter->cells[1];
     if ((size_t)emitter->place_count > places) places = (size_t)emitter->place_count;
     if (own > cells) cells = own;
@@ -134,7 +148,12 @@ bool sim_emitters_make(SimEmitters *emitters, const SimEmitterDef *defs, int32_t
 }
 
 void sim_emitters_free(SimEmitters *emitters) {
-  for (int32_t e = 0; e < emitters->count; e++) sim_release(emitters->emitter[e].place);
+  for (int32_t e = 0; e < emitters->count; e++) {
+    SimEmitter *emitter = &emitters->emitter[e];
+    for (int32_t k = 0; emitter->layer && k < emitter->layer_room; k++) sim_release(emitter->layer[k].place);
+    sim_release(emitter->layer);
+    sim_release(emitter->place);
+  }
   sim_release(emitters->emitter);
   sim_release(emitters->head);
   sim_release(emitters->open);
@@ -147,19 +166,19 @@ void sim_emitters_reset(SimEmitters *emitters) {
     SimEmitter *emitter = &emitters->emitter[e];
     emitter->on = true;
     emitter->clock = emitter->way = 0;
-    emitter->previous[0] = emitter->previous[1] = 0;
+    emitter->guided = 0;
   }
 }
 
 // ---- Where a layer leaves --------------------------------------------------------------------------------------------
 
-/// A layer in the world: the opening's axes, and how it moves.
-typedef struct Layer {
+/// Where a layer is in the world: the middle of it, the opening's axes, and how it moves.
+typedef struct Opening {
   float centre[3];   ///< m
   float axis[3][3];  ///< axis[0] is the way the water goes
   float velocity[3]; ///< m/s, at the centre
   float spin[3];     ///< rad/s
-} Layer;
+} Opening;
 
 static void cross(const float a[3], const float b[3], float c[3]) {
   c[0] = a[1] * b[2] - a[2] * b[1];
@@ -177,8 +196,8 @@ static void turn(const float rotation[4], float v[3]) {
   for (int k = 0; k < 3; k++) v[k] += 2 * (rotation[3] * scale * t[k] + u[k]);
 }
 
-static Layer make_layer(const SimWorld *world, const SimEmitterDef *def, double ahead) {
-  Layer layer = {.axis = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+static Opening opening_at(const SimWorld *world, const SimEmitterDef *def, double ahead) {
+  Opening layer = {.axis = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
   memcpy(layer.centre, def->position, sizeof layer.centre);
   for (int a = 0; a < 3; a++) turn(def->rotation, layer.axis[a]);
   if (def->obstacle >= 0) {
@@ -200,7 +219,7 @@ static Layer make_layer(const SimWorld *world, const SimEmitterDef *def, double 
   return layer;
 }
 
-static void place_in_world(const Layer *layer, const float place[2], float point[3], float velocity[3]) {
+static void place_in_world(const Opening *layer, const float place[2], float point[3], float velocity[3]) {
   float arm[3], swing[3];
   for (int k = 0; k < 3; k++) arm[k] = place[0] * layer->axis[1][k] + place[1] * layer->axis[2][k];
   cross(layer->spin, arm, swing);
@@ -208,6 +227,57 @@ static void place_in_world(const Layer *layer, const float place[2], float point
     point[k] = layer->centre[k] + arm[k];
     velocity[k] = layer->velocity[k] + swing[k];
   }
+}
+
+// ---- Guided layers ---------------------------------------------------------------------------------------------------
+
+// The place of a guided particle in its layer, to be changed by whoever wants to leave it to itself; NULL: not guided.
+static int32_t *guided_place(const SimEmitter *emitter, uint32_t id, const SimLayer **of) {
+  for (int32_t k = 0; k < emitter->guided; k++) {
+    const SimLayer *layer = &emitter->layer[k];
+    uint32_t at = id - layer->first;
+    if (id < layer->first || at >= (uint32_t)layer->count || layer->place[at] < 0) continue;
+    if (of) *of = layer;
+    return &layer->place[at];
+  }
+  return NULL;
+}
+
+// The stream has gone on: release what has gone as far as the support radius.
+static void move_layers(SimEmitter *emitter, double way, double support) {
+  for (int32_t k = 0; k < emitter->guided; k++) emitter->layer[k].ahead += way;
+  while (emitter->guided > 0 && emitter->layer[emitter->guided - 1].ahead >= support) emitter->guided--;
+}
+
+static void guide(SimWorld *world, const SimEmitterDef *def, SimEmitter *emitter) {
+  SimSorted *now = &world->particles.now;
+  if (emitter->guided == 0) return;
+  uint32_t oldest = emitter->layer[emitter->guided - 1].first;
+  for (int32_t i = 0; i < world->particles.count; i++) {
+    if (now->id[i] < oldest) continue;
+    const SimLayer *layer;
+    int32_t *place = guided_place(emitter, now->id[i], &layer);
+    if (!place) continue;
+    Opening opening = opening_at(world, def, layer->ahead);
+    float point[3], velocity[3];
+    place_in_world(&opening, &emitter->place[2 * *place], point, velocity);
+    if (!sim_boundary_free(&world->boundary, point)) {
+      *place = -1;
+      continue;
+    }
+    for (int k = 0; k < 3; k++) now->position[k][i] = point[k], now->velocity[k][i] = velocity[k];
+  }
+}
+
+// A new layer, the one that was released last makes room for it.
+static void guide_new(SimEmitter *emitter, double ahead, uint32_t first, const int32_t *place, int32_t count) {
+  if (emitter->guided == emitter->layer_room) emitter->guided--;
+  SimLayer new = emitter->layer[emitter->guided];
+  memmove(emitter->layer + 1, emitter->layer, sizeof new *(size_t)emitter->guided);
+  new.first = first, new.count = count, new.ahead = ahead;
+  memcpy(new.place, place, sizeof *place * (size_t)count);
+  emitter->layer[0] = new;
+  emitter->guided++;
 }
 
 // ---- Free places -----------------------------------------------------------------------------------------------------
@@ -218,22 +288,21 @@ static int32_t cell_index(const SimEmitter *emitter, int axis, float x, float sp
   return t > 0 ? t < (float)last ? (int32_t)t : last : 0;
 }
 
-static bool add_nearby(SimEmitters *emitters, const SimEmitter *emitter, int32_t n, const float x[3], float reach,
-                       float spacing) {
+static bool add_nearby(SimEmitters *emitters, const SimEmitter *emitter, int32_t n, const float x[3], float spacing) {
   if (!sim_reserve_keep((void **)&emitters->nearby, (size_t)n + 1, sizeof(SimNearby))) return false;
   int32_t *head =
       &emitters
            ->head[cell_index(emitter, 0, x[1], spacing) * emitter->cells[1] + cell_index(emitter, 1, x[2], spacing)];
-  emitters->nearby[n] = (SimNearby){{x[0], x[1], x[2]}, reach * reach, *head};
+  emitters->nearby[n] = (SimNearby){{x[0], x[1], x[2]}, *head};
   *head = n;
   return true;
 }
 
 // One pass over all particles: those in the box around the layer are put into a grid over its plane.
-static bool find_nearby(SimWorld *world, const SimEmitter *emitter, const Layer *layer) {
+static bool find_nearby(SimWorld *world, const SimEmitter *emitter, const Opening *layer) {
   const SimSorted *now = &world->particles.now;
   float spacing = world->cubic.spacing, reach = TOO_NEAR * spacing;
-  float own = fminf(reach, PREVIOUS_TOO_NEAR * emitter->pitch), box[3];
+  float box[3];
   int32_t cells = emitter->cells[0] * emitter->cells[1], n = 0;
   for (int32_t c = 0; c < cells; c++) world->emitters.head[c] = -1;
   for (int k = 0; k < 3; k++)
@@ -246,20 +315,21 @@ static bool find_nearby(SimWorld *world, const SimEmitter *emitter, const Layer 
     for (int a = 0; a < 3; a++) x[a] = d[0] * layer->axis[a][0] + d[1] * layer->axis[a][1] + d[2] * layer->axis[a][2];
     if (fabsf(x[0]) >= reach || fabsf(x[1]) >= emitter->half[0] + reach || fabsf(x[2]) >= emitter->half[1] + reach)
       continue;
-    bool previous = now->id[i] >= emitter->previous[0] && now->id[i] < emitter->previous[1];
-    if (!add_nearby(&world->emitters, emitter, n++, x, previous ? own : reach, spacing)) return false;
+    if (guided_place(emitter, now->id[i], NULL)) continue;
+    if (!add_nearby(&world->emitters, emitter, n++, x, spacing)) return false;
   }
   return true;
 }
 
 static bool taken(const SimEmitters *emitters, const SimEmitter *emitter, const float place[2], float spacing) {
+  float reach2 = TOO_NEAR * spacing * TOO_NEAR * spacing;
   int32_t a = cell_index(emitter, 0, place[0], spacing), b = cell_index(emitter, 1, place[1], spacing);
   for (int32_t y = a > 0 ? a - 1 : 0; y <= a + 1 && y < emitter->cells[0]; y++)
     for (int32_t z = b > 0 ? b - 1 : 0; z <= b + 1 && z < emitter->cells[1]; z++)
       for (int32_t n = emitters->head[y * emitter->cells[1] + z]; n >= 0; n = emitters->nearby[n].next) {
         const SimNearby *near = &emitters->nearby[n];
         float dy = near->x[1] - place[0], dz = near->x[2] - place[1];
-        if (near->x[0] * near->x[0] + dy * dy + dz * dz < near->reach2) return true;
+        if (near->x[0] * near->x[0] + dy * dy + dz * dz < reach2) return true;
       }
   return false;
 }
@@ -267,7 +337,7 @@ static bool taken(const SimEmitters *emitters, const SimEmitter *emitter, const 
 // ---- Emission --------------------------------------------------------------------------------------------------------
 
 static bool emit_layer(SimWorld *world, const SimEmitterDef *def, SimEmitter *emitter, double ahead, SimError *error) {
-  Layer layer = make_layer(world, def, ahead);
+  Opening layer = opening_at(world, def, ahead);
   float point[3], velocity[3];
   int32_t wanted = 0, *open = world->emitters.open;
   if (!find_nearby(world, emitter, &layer)) return sim_fail(error, "out of memory");
@@ -285,21 +355,25 @@ static bool emit_layer(SimWorld *world, const SimEmitterDef *def, SimEmitter *em
     sim_world_add(world, point, velocity, def->colour);
   }
   world->counts.emitted += room;
-  if (room > 0) emitter->previous[0] = first, emitter->previous[1] = world->next_id;
+  if (room > 0) guide_new(emitter, ahead, first, open, room);
   return true;
 }
 
 // Follow one emitter up to the present time.
 static bool follow(SimWorld *world, const SimEmitterDef *def, SimEmitter *emitter, SimError *error) {
-  double from = fmax(emitter->clock, def->start), to = fmin(world->time, def->stop);
+  double from = fmax(emitter->clock, def->start), to = world->time;
   emitter->clock = world->time;
+  bool running = emitter->on && to < def->stop;
+  if (!running) emitter->guided = 0, to = fmin(to, def->stop);
   if (!emitter->on || !(to > from)) return true;
-  emitter->way += (double)def->speed * (to - from);
-  // A billionth is forgiven: substeps are rounded to single precision.
-  while (emitter->way >= (double)emitter->pitch * (1 - 1e-9)) {
+  double way = (double)def->speed * (to - from), after = (double)def->speed * (world->time - to);
+  move_layers(emitter, way, (double)world->cubic.h);
+  guide(world, def, emitter);
+  emitter->way += way;
+  // A millionth is forgiven: substeps are rounded to single precision.
+  while (emitter->way >= (double)emitter->pitch * (1 - 1e-6)) {
     emitter->way -= (double)emitter->pitch;
-    double ahead = emitter->way + (double)def->speed * (world->time - to);
-    if (!emit_layer(world, def, emitter, fmax(ahead, 0), error)) return false;
+    if (!emit_layer(world, def, emitter, fmax(emitter->way + after, 0), error)) return false;
   }
   return true;
 }
@@ -315,7 +389,7 @@ float sim_emit_speed(const SimWorld *world, double soon) {
   for (int32_t e = 0; e < world->emitters.count; e++) {
     const SimEmitterDef *def = &world->emitter_defs[e];
     if (!world->emitters.emitter[e].on || world->time + soon < def->start || world->time >= def->stop) continue;
-    Layer layer = make_layer(world, def, 0);
+    Opening layer = opening_at(world, def, 0);
     float speed2 = 0;
     for (int k = 0; k < 3; k++) speed2 += layer.velocity[k] * layer.velocity[k];
     fastest = fmaxf(fastest, sqrtf(speed2));

@@ -7,6 +7,14 @@
 /// The most particles of one layer.
 #define SIM_MAX_LAYER (1 << 20)
 
+/// A layer that the emitter still guides.
+typedef struct SimLayer {
+  uint32_t first;       ///< id of its first particle
+  int32_t count;
+  double ahead;         ///< m, how far it has gone
+  int32_t *place;       ///< (place_count): where its particles belong, −1: left to itself
+} SimLayer;
+
 /// One emitter while a world runs.
 typedef struct SimEmitter {
   float *place; ///< m, (place_count, 2): the points of a layer along the opening's second and third axis
@@ -17,7 +25,9 @@ typedef struct SimEmitter {
   bool on;              ///< as sim_world_set_emitter left it
   double clock;         ///< s, up to when the stream has been followed
   double way;           ///< m, what the stream has gone since the last layer was due; in [0, pitch)
-  uint32_t previous[2]; ///< ids of the last layer that left: from, up to and without
+  int32_t guided;       ///< number of layers that are guided
+  int32_t layer_room;   ///< the most that ever are
+  SimLayer *layer;      ///< (layer_room), the newest first
 } SimEmitter;
 
 /// A particle near the layer that is about to leave.
@@ -39,7 +49,8 @@ typedef struct SimEmitters {
 /// Number of points of a layer of the opening; may be too large for an int32_t.
 double sim_emitter_places(const SimEmitterDef *def, float spacing);
 
-bool sim_emitters_make(SimEmitters *emitters, const SimEmitterDef *defs, int32_t count, float spacing);
+bool sim_emitters_make(SimEmitters *emitters, const SimEmitterDef *defs, int32_t count, float spacing,
+                       float support);
 void sim_emitters_free(SimEmitters *emitters);
 void sim_emitters_reset(SimEmitters *emitters);
 

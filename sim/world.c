@@ -137,7 +137,8 @@ SimWorld *sim_world_create(const SimWorldDef *def, SimError *error) {
                                   .body_count = def->obstacle_count,
                                   .bodies = world->bodies};
   sim_wall_make(&world->boundary.wall, &world->cubic);
-  if (!sim_emitters_make(&world->emitters, world->emitter_defs, def->emitter_count, world->cubic.spacing)) {
+  if (!sim_emitters_make(&world->emitters, world->emitter_defs, def->emitter_count, world->cubic.spacing,
+                         world->cubic.h)) {
     sim_fail(error, "out of memory");
     sim_world_destroy(world);
     return NULL;
