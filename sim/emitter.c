@@ -290,19 +290,16 @@ static int32_t cell_index(const SimEmitter *emitter, int axis, float x, float sp
 
 static bool add_nearby(SimEmitters *emitters, const SimEmitter *emitter, int32_t n, const float x[3], float spacing) {
   if (!sim_reserve_keep((void **)&emitters->nearby, (size_t)n + 1, sizeof(SimNearby))) return false;
-  int32_t *head =
-      &emitters
-           ->head[cell_index(emitter, 0, x[1], spacing) * emitter->cells[1] + cell_index(emitter, 1, x[2], spacing)];
-  emitters->nearby[n] = (SimNearby){{x[0], x[1], x[2]}, *head};
-  *head = n;
+  int32_t cell = cell_index(emitter, 0, x[1], spacing) * emitter->cells[1] + cell_index(emitter, 1, x[2], spacing);
+  emitters->nearby[n] = (SimNearby){{x[0], x[1], x[2]}, emitters->head[cell]};
+  emitters->head[cell] = n;
   return true;
 }
 
 // One pass over all particles: those in the box around the layer are put into a grid over its plane.
 static bool find_nearby(SimWorld *world, const SimEmitter *emitter, const Opening *layer) {
   const SimSorted *now = &world->particles.now;
-  float spacing = world->cubic.spacing, reach = TOO_NEAR * spacing;
-  float box[3];
+  float spacing = world->cubic.spacing, reach = TOO_NEAR * spacing, box[3];
   int32_t cells = emitter->cells[0] * emitter->cells[1], n = 0;
   for (int32_t c = 0; c < cells; c++) world->emitters.head[c] = -1;
   for (int k = 0; k < 3; k++)

@@ -17,7 +17,7 @@ typedef struct SimLayer {
 
 /// One emitter while a world runs.
 typedef struct SimEmitter {
-  float *place; ///< m, (place_count, 2): the points of a layer along the opening's second and third axis
+  float *place;         ///< m, (place_count, 2): the points of a layer along the opening's second and third axis
   int32_t place_count;
   float half[2];        ///< m, of the box around the places
   int32_t cells[2];     ///< of the plane grid over it, in which nearby particles are looked up
@@ -32,17 +32,16 @@ typedef struct SimEmitter {
 
 /// A particle near the layer that is about to leave.
 typedef struct SimNearby {
-  float x[3];   ///< m, along the opening's axes, from the middle of the layer
-  float reach2; ///< m², a place nearer than its root is taken
-  int32_t next; ///< in the same cell, −1: none
+  float x[3];           ///< m, along the opening's axes, from the middle of the layer
+  int32_t next;         ///< in the same cell, −1: none
 } SimNearby;
 
 /// All emitters of a world and what they share while they work.
 typedef struct SimEmitters {
   int32_t count;
-  SimEmitter *emitter; ///< (count)
-  int32_t *head;       ///< (cells of the largest): the first nearby particle of a cell, −1: none
-  int32_t *open;       ///< (places of the largest): the places of a layer that are free
+  SimEmitter *emitter;  ///< (count)
+  int32_t *head;        ///< (cells of the largest): the first nearby particle of a cell, −1: none
+  int32_t *open;        ///< (places of the largest): the places of a layer that are free
   SimNearby *nearby;
 } SimEmitters;
 
