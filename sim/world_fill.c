@@ -39,20 +39,24 @@ static double ball_points(double radius, double gap) {
   return points;
 }
 
-// Symmetric about the centre in both cases; the one of the two whose number of points is nearer to the ball's volume.
+// Symmetric about the centre in all cases. Shells of points come and go all at once as the radius grows, so of both kinds
+// of lattice and of cuts up to a fifth of a spacing away from the radius the one is taken that is nearest in volume.
 static double drop_lattice(const SimDropDef *drop, float spacing, Lattice *lattice) {
-  double radius = (double)drop->radius / (double)spacing * 1.000001,
-         volume = 4.18879020478639 * radius * radius * radius;
+  const double radius = (double)drop->radius / (double)spacing, volume = 4.18879020478639 * radius * radius * radius;
+  double best = 1, best_cut = 0, best_gap = 0;
   if (volume > SIM_MAX_PARTICLES) return volume;
-  double odd = ball_points(radius, 0), even = ball_points(radius, 0.5), points = odd;
-  int32_t size = 2 * (int32_t)floor(radius) + 1;
-  if (fabs(even - volume) < fabs(odd - volume) && even > 0) points = even, size = 2 * (int32_t)floor(radius + 0.5);
-  lattice->radius2 = radius * radius;
-  for (int k = 0; k < 3; k++) {
-    lattice->size[k] = size;
-    lattice->origin[k] = drop->centre[k] - 0.5f * spacing * (float)(size - 1);
+  for (int k = 0; k < 18; k++) {
+    // The nearest cuts first; a hair more, so that no point lies on the cut.
+    double cut = radius * 1.000001 + 0.05 * ((k / 2 + 1) / 2) * (k / 2 % 2 ? 1 : -1), gap = k % 2 ? 0.5 : 0;
+    double points = cut > 0 ? ball_points(cut, gap) : 0;
+    if (points > 0 && fabs(points - volume) < fabs(best - volume)) best = points, best_cut = cut, best_gap = gap;
   }
-  return points;
+  lattice->radius2 = best_cut * best_cut;
+  for (int k = 0; k < 3; k++) {
+    lattice->size[k] = best_gap > 0 ? 2 * (int32_t)floor(best_cut + 0.5) : 2 * (int32_t)floor(best_cut) + 1;
+    lattice->origin[k] = drop->centre[k] - 0.5f * spacing * (float)(lattice->size[k] - 1);
+  }
+  return best;
 }
 
 static bool lattice_has(const Lattice *lattice, const int32_t at[3]) {
