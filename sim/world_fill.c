@@ -27,33 +27,35 @@ static double block_lattice(const SimBlockDef *block, float spacing, Lattice *la
   return points;
 }
 
-// Points of a ball, in spacings, on a lattice with a point in the middle (gap = 0) or none (gap = ½).
-static double ball_points(double radius, double gap) {
-  double points = 0, reach = floor(radius + gap);
-  for (double z = gap - reach; z <= reach - gap; z++)
-    for (double y = gap - reach; y <= reach - gap; y++) {
+// Points of a ball, in spacings, on a lattice whose middle is a point (gap = 0) or midway between two (½) along each axis.
+static double ball_points(double radius, const double gap[3]) {
+  double points = 0, y_reach = floor(radius + gap[1]) - gap[1], z_reach = floor(radius + gap[2]) - gap[2];
+  for (double z = -z_reach; z <= z_reach; z++)
+    for (double y = -y_reach; y <= y_reach; y++) {
       double rest = radius * radius - y * y - z * z;
-      if (rest < 0) continue;
-      points += gap == 0 ? 2 * floor(sqrt(rest)) + 1 : 2 * floor(sqrt(rest) + 0.5);
+      if (rest >= 0) points += 2 * (floor(sqrt(rest) + gap[0]) - gap[0]) + 1;
     }
   return points;
 }
 
-// Symmetric about the centre in all cases. Shells of points come and go all at once as the radius grows, so of both kinds
-// of lattice and of cuts up to a fifth of a spacing away from the radius the one is taken that is nearest in volume.
+// Points come and go in whole shells as the radius grows. So of the lattices that are symmetric about the centre, and of
+// cuts up to a fifth of a spacing away from the radius, the one is taken that is nearest in volume.
 static double drop_lattice(const SimDropDef *drop, float spacing, Lattice *lattice) {
   const double radius = (double)drop->radius / (double)spacing, volume = 4.18879020478639 * radius * radius * radius;
-  double best = 1, best_cut = 0, best_gap = 0;
+  double best = 1, best_cut = 0.1, best_gap[3] = {0, 0, 0};
   if (volume > SIM_MAX_PARTICLES) return volume;
-  for (int k = 0; k < 18; k++) {
+  for (int k = 0; k < 36; k++) {
     // The nearest cuts first; a hair more, so that no point lies on the cut.
-    double cut = radius * 1.000001 + 0.05 * ((k / 2 + 1) / 2) * (k / 2 % 2 ? 1 : -1), gap = k % 2 ? 0.5 : 0;
+    double cut = radius * 1.000001 + 0.05 * ((k / 4 + 1) / 2) * (k / 4 % 2 ? 1 : -1);
+    const double gap[3] = {k % 4 > 0 ? 0.5 : 0, k % 4 > 1 ? 0.5 : 0, k % 4 > 2 ? 0.5 : 0};
     double points = cut > 0 ? ball_points(cut, gap) : 0;
-    if (points > 0 && fabs(points - volume) < fabs(best - volume)) best = points, best_cut = cut, best_gap = gap;
+    if (points == 0 || fabs(points - volume) >= fabs(best - volume)) continue;
+    best = points, best_cut = cut;
+    memcpy(best_gap, gap, sizeof gap);
   }
   lattice->radius2 = best_cut * best_cut;
   for (int k = 0; k < 3; k++) {
-    lattice->size[k] = best_gap > 0 ? 2 * (int32_t)floor(best_cut + 0.5) : 2 * (int32_t)floor(best_cut) + 1;
+    lattice->size[k] = (int32_t)(2 * (floor(best_cut + best_gap[k]) - best_gap[k])) + 1;
     lattice->origin[k] = drop->centre[k] - 0.5f * spacing * (float)(lattice->size[k] - 1);
   }
   return best;
