@@ -144,8 +144,8 @@ static void the_flow_is_area_times_speed(void **state) {
 }
 
 // Behind the first layers, and as far as the support radius away from the stream's own surface, the density is the one
-// at rest, and the speed is that of the spout: no gap and no bunch. The same in steps of any length. Without the artificial
-// pressure, which widens a stream in the air by itself, and the more the shorter the steps are.
+// at rest, and the speed is that of the spout: no gap and no bunch. The same in steps of any length; in short ones
+// without the artificial pressure, which tears a stream in the air apart by itself, the more the shorter the steps are.
 static void the_stream_has_neither_gaps_nor_bunches(void **state) {
   (void)state;
   const float steps[] = {0, 0.0013f, 0.0097f}, speeds[] = {1, 1, 3};
@@ -156,7 +156,7 @@ static void the_stream_has_neither_gaps_nor_bunches(void **state) {
       if (disc) spout.shape = SIM_EMITTER_DISC;
       def.time_step = steps[k];
       def.cfl = 2;
-      def.tensile = 0;
+      if (steps[k] > 0) def.tensile = 0;
       SimWorld *world = test_create(&def);
       test_advance(world, speeds[k] > 2 ? 25 : 60);
       const SimFrame *frame = test_frame(world, 0, buffer);
