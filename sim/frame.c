@@ -10,9 +10,6 @@
 #include "sim/surface.h"
 #include "sim/world.h"
 
-/// Linear colour of a particle without a colour among coloured ones.
-static const float default_colour[3] = {0.05f, 0.30f, 0.45f};
-
 struct SimFrameBuffer {
   SimFrame frame;
   int32_t threads;
@@ -152,17 +149,13 @@ static void copy_kernel(int32_t begin, int32_t end, const void *context) {
   const SimSorted *now = &c->world->particles.now;
   SimFrameBuffer *buffer = c->buffer;
   for (int32_t i = begin; i < end; i++) {
-    uint32_t id = now->id[i];
-    buffer->id[i] = id;
+    buffer->id[i] = now->id[i];
     buffer->density[i] = c->world->particles.density[i] * c->world->def.rest_density;
     for (int k = 0; k < 3; k++) {
       buffer->sorted[k][i] = buffer->position[3 * (int64_t)i + k] = now->position[k][i];
       buffer->velocity[3 * (int64_t)i + k] = now->velocity[k][i];
     }
-    if (!c->world->coloured) continue;
-    const float *colour = c->world->colour + 3 * (size_t)id;
-    if (colour[0] == 0 && colour[1] == 0 && colour[2] == 0) colour = default_colour;
-    memcpy(buffer->colour + 3 * (int64_t)i, colour, sizeof default_colour);
+    for (int k = 0; c->world->particles.coloured && k < 3; k++) buffer->colour[3 * (int64_t)i + k] = now->colour[k][i];
   }
 }
 
@@ -204,7 +197,7 @@ const SimFrame *sim_world_frame(SimWorld *world, unsigned needs, SimFrameBuffer 
   frame->position = buffer->position;
   frame->velocity = buffer->velocity;
   frame->density = buffer->density;
-  frame->colour = world->coloured ? buffer->colour : NULL;
+  frame->colour = world->particles.coloured ? buffer->colour : NULL;
   frame->radius = NULL;
   bounds_of(frame);
   if (!copy_grid(buffer, &world->sort.grid, error) || !copy_obstacles(buffer, world, error)) return NULL;

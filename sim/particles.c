@@ -7,16 +7,16 @@
 #include "sim/parallel.h"
 #include "sim/wide/wide.h"
 
-int sim_particles_state(SimParticles *particles, void **list[SIM_STATE_ARRAYS]) {
-  SimSorted *now = &particles->now;
+int32_t sim_particles_list(SimSorted *sorted, bool coloured, void **list[SIM_SORTED_ARRAYS]) {
   for (int k = 0; k < 3; k++) {
-    list[k] = (void **)&now->position[k];
-    list[3 + k] = (void **)&now->velocity[k];
-    list[6 + k] = (void **)&now->next_velocity[k];
+    list[k] = (void **)&sorted->position[k];
+    list[3 + k] = (void **)&sorted->velocity[k];
+    list[6 + k] = (void **)&sorted->next_velocity[k];
+    if (coloured) list[11 + k] = (void **)&sorted->colour[k];
   }
-  list[9] = (void **)&now->pressure;
-  list[10] = (void **)&now->id;
-  return 11;
+  list[9] = (void **)&sorted->pressure;
+  list[10] = (void **)&sorted->id;
+  return coloured ? SIM_SORTED_ARRAYS : SIM_SORTED_ARRAYS - 3;
 }
 
 // Whole chunks, and one more for the particles infinitely far away.
@@ -26,10 +26,10 @@ static size_t padded(int32_t count) {
 
 bool sim_particles_reserve(SimParticles *particles, int32_t capacity) {
   if (particles->first && capacity <= particles->capacity) return true;
-  void **list[SIM_STATE_ARRAYS];
-  int arrays = sim_particles_state(particles, list);
+  void **list[SIM_SORTED_ARRAYS];
+  int32_t arrays = sim_particles_list(&particles->now, particles->coloured, list);
   size_t n = padded(capacity);
-  for (int k = 0; k < arrays; k++)
+  for (int32_t k = 0; k < arrays; k++)
     if (!sim_reserve_keep(list[k], n, sizeof(float))) return false;
   if (!sim_reserve(&particles->spare, n, sizeof(float)) ||
       !sim_reserve((void **)&particles->first, 4 * n, sizeof(float)) ||
@@ -43,9 +43,9 @@ bool sim_particles_reserve(SimParticles *particles, int32_t capacity) {
 }
 
 void sim_particles_free(SimParticles *particles) {
-  void **list[SIM_STATE_ARRAYS];
-  int arrays = sim_particles_state(particles, list);
-  for (int k = 0; k < arrays; k++) sim_release(*list[k]);
+  void **list[SIM_SORTED_ARRAYS];
+  int32_t arrays = sim_particles_list(&particles->now, true, list);
+  for (int32_t k = 0; k < arrays; k++) sim_release(*list[k]);
   sim_release(particles->spare);
   sim_release(particles->first);
   sim_release(particles->second);
@@ -55,13 +55,25 @@ void sim_particles_free(SimParticles *particles) {
   memset(particles, 0, sizeof *particles);
 }
 
-void sim_particles_add(SimParticles *particles, uint32_t id, const float position[3], const float velocity[3]) {
+bool sim_particles_colour(SimParticles *particles, const float colour[3]) {
+  if (particles->coloured) return true;
+  for (int k = 0; k < 3; k++) {
+    if (!sim_reserve((void **)&particles->now.colour[k], padded(particles->capacity), sizeof(float))) return false;
+    for (int32_t i = 0; i < particles->count; i++) particles->now.colour[k][i] = colour[k];
+  }
+  particles->coloured = true;
+  return true;
+}
+
+void sim_particles_add(SimParticles *particles, uint32_t id, const float position[3], const float velocity[3],
+                       const float colour[3]) {
   assert(particles->count < particles->capacity);
   int32_t i = particles->count++;
   for (int k = 0; k < 3; k++) {
     particles->now.position[k][i] = position[k];
     particles->now.velocity[k][i] = particles->now.next_velocity[k][i] = velocity[k];
   }
+  for (int k = 0; particles->coloured && k < 3; k++) particles->now.colour[k][i] = colour[k];
   particles->now.pressure[i] = 0;
   particles->now.id[i] = id;
 }
@@ -108,9 +120,9 @@ bool sim_particles_sort(SimParticles *particles, SimCellSort *sort, float cell_s
   sim_particles_pad(particles, particles->first);
   sim_parallel_for(threads, particles->count, to_axes_kernel, &context);
 
-  void **list[SIM_STATE_ARRAYS];
-  int arrays = sim_particles_state(particles, list);
-  for (int k = 0; k < arrays; k++) {
+  void **list[SIM_SORTED_ARRAYS];
+  int32_t arrays = sim_particles_list(&particles->now, particles->coloured, list);
+  for (int32_t k = 0; k < arrays; k++) {
     const void *source = *list[k];
     sim_grid_gather(sort, particles->count, threads, 1, &source, &particles->spare);
     void *sorted = particles->spare;

@@ -20,11 +20,13 @@ typedef struct SimSorted {
   float *velocity[3];      ///< m/s, likewise; both change only when a substep has succeeded
   float *next_velocity[3]; ///< m/s, written by predict, correct and viscosity
   float *pressure;         ///< m²/s², what the solver starts the next substep from: of pbf, Σλ/dt²; never positive
-  uint32_t *id;
+  float *colour[3];        ///< linear light, [0, 1]; only where `coloured` is set
+  uint32_t *id;            ///< unique
 } SimSorted;
 
 typedef struct SimParticles {
   int32_t count, capacity;
+  bool coloured;           ///< colours are held and follow the particles
   SimSorted now;
   void *spare;             ///< (count) words: the sort moves an array into it and swaps the two
   // Work arrays in the present order.
@@ -43,11 +45,19 @@ bool sim_particles_reserve(SimParticles *particles, int32_t capacity);
 void sim_particles_free(SimParticles *particles);
 
 /// Append a particle at rest in the solver's eyes. There must be room.
-void sim_particles_add(SimParticles *particles, uint32_t id, const float position[3], const float velocity[3]);
+void sim_particles_add(SimParticles *particles, uint32_t id, const float position[3], const float velocity[3],
+                       const float colour[3]);
 
-/// The arrays of the state, each of 4-byte words: at most SIM_STATE_ARRAYS; returns how many.
-#define SIM_STATE_ARRAYS 16
-int sim_particles_state(SimParticles *particles, void **list[SIM_STATE_ARRAYS]);
+/// Hold colours from now on; the particles that are there get the given one. false when memory runs out.
+bool sim_particles_colour(SimParticles *particles, const float colour[3]);
+
+/// Every array that follows a particle, all of them of 32-bit words: the one list that sorting and removal go by. The
+/// colours come last, and only if asked for. Returns how many.
+#define SIM_SORTED_ARRAYS 14
+int32_t sim_particles_list(SimSorted *sorted, bool coloured, void **list[SIM_SORTED_ARRAYS]);
+
+/// Take away the particles whose flag is set, (count); the others keep their order (particles_remove.c).
+void sim_particles_remove(SimParticles *particles, const uint8_t *gone);
 
 /// The work array `second` as three arrays x, y, z of one float a particle (while nobody needs it otherwise).
 void sim_particles_second_as_axes(const SimParticles *particles, float *axes[3]);

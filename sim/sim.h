@@ -46,7 +46,7 @@ typedef struct SimBlockDef {
   float colour[3];             ///< linear light [0, 1]; all zero: the default colour of water
 } SimBlockDef;
 
-/// A ball of water, cut out of the same lattice.
+/// A ball of water, cut out of a lattice of the same spacing that lies symmetrically about its centre.
 typedef struct SimDropDef {
   float centre[3], radius;     ///< m, radius > 0
   float velocity[3];           ///< m/s at the start
@@ -55,19 +55,24 @@ typedef struct SimDropDef {
 
 typedef enum SimEmitterShape { SIM_EMITTER_DISC = 0, SIM_EMITTER_RECTANGLE = 1 } SimEmitterShape;
 
-/// A spout: layers of particles leave its opening, one whenever the last one is a spacing away. So the rate follows from
-/// opening, speed and spacing. A place that is not free (a body, other water) emits nothing until it is.
+/// A spout: layers of particles leave its opening, one whenever the last one is about a spacing away: just so far that the
+/// flow is the opening's area times the speed. A layer's particles begin half a spacing in front of the opening, so it may
+/// lie in a wall. A place that is not free (a body, other water) emits nothing until it is.
 typedef struct SimEmitterDef {
   SimEmitterShape shape;
-  float size[2];               ///< m: disc, (diameter, –); rectangle, full width along its first and second axis
+  float size[2];               ///< m: disc, (diameter, –); rectangle, full width along its first and second axis; at most 2²⁰
+                               ///< particles a layer
   float position[3];           ///< m, the middle of the opening; in the obstacle's own axes where `obstacle` is set
   float rotation[4];           ///< unit quaternion x, y, z, w; water leaves along the turned +x axis, the rectangle's first
                                ///< axis is the turned y
   float speed;                 ///< m/s, [0.01, 100], on top of the obstacle's
-  double start, stop;          ///< s: it runs from start until stop; stop may be INFINITY
+  double start, stop;          ///< s: it runs from start until stop, start ≤ stop; stop may be INFINITY
   float colour[3];             ///< as for a block
   int32_t obstacle;            ///< index of the obstacle that carries it, −1: none
 } SimEmitterDef;
+
+/// A disc of 10 cm at the origin, 1 m/s along x, without end.
+SimEmitterDef sim_default_emitter_def(void);
 
 /// A box that swallows the particles whose centres enter it.
 typedef struct SimSinkDef {
@@ -139,8 +144,10 @@ typedef struct SimWorldDef {
   const SimEmitterDef *emitters; ///< (emitter_count), copied
   int32_t sink_count;
   const SimSinkDef *sinks;     ///< (sink_count), copied
-  int32_t max_particles;       ///< emitters and pouring stop there; 0 (the default): SIM_MAX_PARTICLES
-  bool reuse;                  ///< at max_particles emitters take away the particles that were emitted first, default false
+  int32_t max_particles;       ///< emitters and pouring stop there, and a start with more is refused, [0, SIM_MAX_PARTICLES];
+                               ///< 0 (the default): SIM_MAX_PARTICLES. Memory for them is set aside where there are emitters
+  bool reuse;                  ///< at max_particles emitters and pouring take away the particles that came first, never those
+                               ///< of the start; default false
   float colour_diffusion;      ///< m²/s, how fast colours of neighbouring water mix, default 0, range [0, 10]
   int32_t obstacle_count;
   const SimObstacleDef *obstacles; ///< (obstacle_count), copied, their meshes too
@@ -153,7 +160,7 @@ typedef struct SimWorld SimWorld;
 
 SimWorldDef sim_default_world_def(void);
 
-/// Make a world. Particles of a block that would lie in an obstacle or outside the container are left out; see
+/// Make a world. Particles of a block or drop that would lie in an obstacle or outside the container are left out; see
 /// sim_world_counts. NULL and *error when a value is out of range, the particles are too many, or memory runs out.
 SimWorld *sim_world_create(const SimWorldDef *def, SimError *error);
 void sim_world_destroy(SimWorld *world); ///< NULL is allowed
@@ -185,6 +192,12 @@ bool sim_world_set_gravity(SimWorld *world, const float gravity[3]);
 /// Pour a block of water into the running world. Lattice points that are nearer than 0.9 spacings to a particle, or
 /// lie outside, stay empty. Returns the number of particles added, −1 and *error when it cannot.
 int32_t sim_world_pour(SimWorld *world, const SimBlockDef *block, SimError *error);
+/// The same with a ball of water.
+int32_t sim_world_drop(SimWorld *world, const SimDropDef *drop, SimError *error);
+
+/// Open or close an emitter; open, it still runs from its start until its stop only. All are open at the start and after a
+/// reset. false: no such emitter.
+bool sim_world_set_emitter(SimWorld *world, int32_t emitter, bool on);
 
 /// Where the draggable obstacle should be from now on; it goes there at no more than its max_speed, so that nothing
 /// tunnels. false: no such draggable obstacle, or not finite. Rotation NULL: as it is.
@@ -197,7 +210,7 @@ const SimFrame *sim_world_frame(SimWorld *world, unsigned needs, SimFrameBuffer 
 /// What happened at creation and until now.
 typedef struct SimCounts {
   int32_t particles;
-  int32_t left_out;            ///< start-up particles that lay in an obstacle or outside the container
+  int32_t left_out;            ///< start-up particles that lay in an obstacle, outside the container or in other water
   int64_t emitted, swallowed, reused; ///< by emitters and pouring; by sinks; taken away at max_particles
   int64_t substeps;            ///< since creation or reset
 } SimCounts;

@@ -76,6 +76,9 @@ static void free_meshes(SimWorld *world) {
 static bool copy_def(SimWorld *world, const SimWorldDef *def) {
   world->def = *def;
   if (!copy_array((void **)&world->blocks, def->blocks, def->block_count, sizeof(SimBlockDef)) ||
+      !copy_array((void **)&world->drops, def->drops, def->drop_count, sizeof(SimDropDef)) ||
+      !copy_array((void **)&world->emitter_defs, def->emitters, def->emitter_count, sizeof(SimEmitterDef)) ||
+      !copy_array((void **)&world->sinks, def->sinks, def->sink_count, sizeof(SimSinkDef)) ||
       !copy_array((void **)&world->obstacle_defs, def->obstacles, def->obstacle_count, sizeof(SimObstacleDef)) ||
       !(world->obstacles = sim_allocate((size_t)def->obstacle_count * sizeof(SimObstacle))) ||
       !(world->bodies = sim_allocate((size_t)def->obstacle_count * sizeof(SimBody))) ||
@@ -83,6 +86,9 @@ static bool copy_def(SimWorld *world, const SimWorldDef *def) {
       !copy_meshes(world, def))
     return false;
   world->def.blocks = world->blocks;
+  world->def.drops = world->drops;
+  world->def.emitters = world->emitter_defs;
+  world->def.sinks = world->sinks;
   world->def.obstacles = world->obstacle_defs;
   for (int32_t b = 0; b < def->obstacle_count; b++) {
     SimObstacle *obstacle = &world->obstacle_defs[b].body;
@@ -111,10 +117,23 @@ void sim_world_raise_speed_limit(SimWorld *world) {
   world->speed_limit = fmaxf(world->speed_limit, limit);
 }
 
-// Everything back to the start; the particles are those of the blocks.
+static bool is_coloured(const float colour[3]) {
+  return colour[0] != 0 || colour[1] != 0 || colour[2] != 0;
+}
+
+static bool any_colour(const SimWorldDef *def) {
+  bool any = false;
+  for (int32_t b = 0; b < def->block_count; b++) any = any || is_coloured(def->blocks[b].colour);
+  for (int32_t d = 0; d < def->drop_count; d++) any = any || is_coloured(def->drops[d].colour);
+  for (int32_t e = 0; e < def->emitter_count; e++) any = any || is_coloured(def->emitters[e].colour);
+  return any;
+}
+
+// Everything back to the start; the particles are those of the blocks and drops.
 static bool start(SimWorld *world, SimError *error) {
   world->particles.count = 0;
-  world->coloured = false;
+  world->particles.coloured = false;
+  world->next_id = world->start_count = 0;
   memcpy(world->gravity, world->def.gravity, sizeof world->gravity);
   world->push_count = 0;
   world->time = world->last_dt = 0;
@@ -123,9 +142,18 @@ static bool start(SimWorld *world, SimError *error) {
   world->counts = (SimCounts){0};
   world->speed_limit = 0;
   sim_world_raise_speed_limit(world);
+  for (int32_t e = 0; e < world->def.emitter_count; e++)
+    world->speed_limit = fmaxf(world->speed_limit, 10 * world->emitter_defs[e].speed);
+  sim_emitters_reset(&world->emitters);
   if (!sim_particles_reserve(&world->particles, 0)) return sim_fail(error, "out of memory");
+  if (!sim_world_reserve(world, error)) return false;
+  if (any_colour(&world->def) && !sim_particles_colour(&world->particles, sim_water_colour))
+    return sim_fail(error, "out of memory");
   for (int32_t b = 0; b < world->def.block_count; b++)
     if (sim_fill_block(world, &world->blocks[b], true, error) < 0) return false;
+  for (int32_t d = 0; d < world->def.drop_count; d++)
+    if (sim_fill_drop(world, &world->drops[d], true, error) < 0) return false;
+  world->start_count = world->next_id;
   return sim_world_settle(world, error);
 }
 
@@ -152,6 +180,12 @@ SimWorld *sim_world_create(const SimWorldDef *def, SimError *error) {
   world->boundary.clearance = def->particle_radius;
   world->boundary.body_count = def->obstacle_count;
   world->boundary.bodies = world->bodies;
+  if (!sim_emitters_make(&world->emitters, world->emitter_defs, def->emitter_count, world->cubic.spacing,
+                         world->cubic.h)) {
+    sim_fail(error, "out of memory");
+    sim_world_destroy(world);
+    return NULL;
+  }
   if (!start(world, error)) {
     sim_world_destroy(world);
     return NULL;
@@ -167,8 +201,12 @@ void sim_world_destroy(SimWorld *world) {
   sim_grid_free(&world->fill_sort);
   sim_neighbours_free(&world->neighbours);
   for (int k = 0; k < 3; k++) sim_release(world->fill_position[k]);
-  sim_release(world->colour);
+  sim_emitters_free(&world->emitters);
+  sim_release(world->gone);
   sim_release(world->blocks);
+  sim_release(world->drops);
+  sim_release(world->emitter_defs);
+  sim_release(world->sinks);
   sim_release(world->obstacles);
   sim_release(world->obstacle_defs);
   sim_release(world->bodies);
@@ -193,7 +231,7 @@ static double longest_substep(const SimWorld *world) {
   double spacing = (double)world->cubic.spacing, pull = (double)sim_pull(world), longest = world->method->longest(world);
   longest = fmin(longest, world->last_dt > 0 ? GROWTH * world->last_dt : FIRST * longest);
   if (world->def.time_step > 0) longest = fmin(longest, (double)world->def.time_step);
-  double speed = (double)sim_largest_speed(world, world->particles.now.velocity) + pull * longest;
+  double speed = (double)fmaxf(sim_largest_speed(world, world->particles.now.velocity), sim_emit_speed(world, longest)) + pull * longest;
   double cfl = speed > 0 ? (double)world->def.cfl * spacing / speed : longest;
   return fmin(longest, cfl);
 }
@@ -209,7 +247,8 @@ bool sim_world_advance(SimWorld *world, double duration, SimError *error) {
   for (double rest = duration; rest > 0 && !world->failed;) {
     double substeps = ceil(rest / longest_substep(world) - 1e-6);
     double dt = substeps > 1 ? rest / substeps : rest;
-    world->failed = !world->method->substep(world, (float)dt, &world->failure);
+    world->failed = !world->method->substep(world, (float)dt, &world->failure) ||
+                    !sim_swallow(world, &world->failure) || !sim_emit(world, &world->failure);
     world->last_dt = dt;
     rest = substeps > 1 ? rest - dt : 0;
   }

@@ -1,15 +1,19 @@
-// Inside of a world: what world.c (the step), world_def.c (limits of a Def), world_fill.c (blocks and pouring) and
-// frame.c share.
+// Inside of a world: what world.c (the step), world_def.c (limits of a Def), world_fill.c (blocks, drops and pouring),
+// emitter.c, world_room.c (sinks, the limit) and frame.c share.
 #ifndef LIDO_SIM_WORLD_H
 #define LIDO_SIM_WORLD_H
 
+#include "sim/emitter.h"
 #include "sim/solver.h"
 
 #define SIM_DEF_COOKIE 0x4c69646fu
 
 struct SimWorld {
-  SimWorldDef def;             ///< with its own copies of blocks and obstacles
+  SimWorldDef def;             ///< with its own copies of all arrays
   SimBlockDef *blocks;
+  SimDropDef *drops;
+  SimEmitterDef *emitter_defs;
+  SimSinkDef *sinks;
   SimObstacleDef *obstacle_defs;
   SimObstacle *obstacles;      ///< with their present poses
   SimBody *bodies;
@@ -23,8 +27,10 @@ struct SimWorld {
   SimBoundary boundary;
   SimWallTable wall;
   SimParticles particles;
-  float *colour;               ///< (capacity, 3) by id; only read where coloured is set
-  bool coloured;               ///< some block brought a colour
+  uint32_t next_id;            ///< ids count up from 0; it would take 2³² particles to wrap round
+  uint32_t start_count;        ///< the particles of the start have the ids below
+  SimEmitters emitters;
+  uint8_t *gone;               ///< (count), flags of sim_particles_remove
   SimCellSort sort, fill_sort; ///< of the substep; of world_fill
   SimNeighbours neighbours;
   float *fill_position[3];     ///< world_fill's sorted copy
@@ -50,8 +56,31 @@ bool sim_def_check(const SimWorldDef *def, SimError *error);
 /// The same for one block; `name` goes in front of the message.
 bool sim_block_check(const SimBlockDef *block, const char *name, SimError *error);
 
-/// Fill a block with particles. Adds to counts.left_out if `start`. Returns the number added, −1 and *error.
+/// The same for a drop.
+bool sim_drop_check(const SimDropDef *drop, const char *name, SimError *error);
+
+/// Fill a block or a drop with particles. Adds to counts.left_out if `start`, else to counts.emitted. Returns the number
+/// added, −1 and *error.
 int32_t sim_fill_block(SimWorld *world, const SimBlockDef *block, bool start, SimError *error);
+int32_t sim_fill_drop(SimWorld *world, const SimDropDef *drop, bool start, SimError *error);
+
+/// Linear colour of water that was given none.
+extern const float sim_water_colour[3];
+/// The most particles that the world may hold.
+int32_t sim_world_limit(const SimWorld *world);
+/// Memory ahead for what emitters will bring, where the Def says how much that is at most.
+bool sim_world_reserve(SimWorld *world, SimError *error);
+/// Make memory and room for `wanted` more particles, by taking away what was emitted first where the Def wants that.
+/// Returns for how many there is room now, at most `wanted`; −1 and *error.
+int32_t sim_world_make_way(SimWorld *world, int32_t wanted, SimError *error);
+/// Add a particle with the next id. There must be room.
+void sim_world_add(SimWorld *world, const float point[3], const float velocity[3], const float colour[3]);
+
+/// At the end of a substep: take away what is in the sinks, then let out the layers that have become due.
+bool sim_swallow(SimWorld *world, SimError *error);
+bool sim_emit(SimWorld *world, SimError *error);
+/// Largest speed of the water that emitters let out now or within the next `soon` seconds, m/s.
+float sim_emit_speed(const SimWorld *world, double soon);
 
 /// Sort by the present positions and compute grid, lists and density of the present state, if not done already. Every
 /// call of the interface leaves a world settled (unless it failed), so looking at it never changes what comes next.

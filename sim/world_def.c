@@ -78,20 +78,86 @@ static bool check_container(const SimWorldDef *def, SimError *error) {
   return true;
 }
 
-bool sim_block_check(const SimBlockDef *block, const char *name, SimError *error) {
-  char field[64];
-  const char *const names[4] = {"min", "max", "velocity", "colour"};
-  const float *const values[4] = {block->min, block->max, block->velocity, block->colour};
-  const float limits[4] = {1e6f, 1e6f, 1e4f, 1e3f};
-  for (int k = 0; k < 4; k++) {
-    snprintf(field, sizeof field, "%s.%s", name, names[k]);
-    if (!finite_vector(field, values[k], limits[k], error)) return false;
+// Vectors of an object, each with its name and limit, up to one without a name.
+typedef struct Vector {
+  const char *name;
+  const float *value;
+  float limit;
+} Vector;
+
+static bool finite_vectors(const char *object, const Vector *vectors, SimError *error) {
+  char field[128];
+  for (; vectors->name; vectors++) {
+    snprintf(field, sizeof field, "%s.%s", object, vectors->name);
+    if (!finite_vector(field, vectors->value, vectors->limit, error)) return false;
   }
-  for (int k = 0; k < 3; k++)
-    if (!(block->min[k] < block->max[k]))
-      return sim_fail(error, "%s: min must be below max along axis %d, got %g and %g", name, k, (double)block->min[k],
-                      (double)block->max[k]);
   return true;
+}
+
+static bool growing(const char *name, const float low[3], const float high[3], SimError *error) {
+  for (int k = 0; k < 3; k++)
+    if (!(low[k] < high[k]))
+      return sim_fail(error, "%s: min must be below max along axis %d, got %g and %g", name, k, (double)low[k],
+                      (double)high[k]);
+  return true;
+}
+
+bool sim_block_check(const SimBlockDef *block, const char *name, SimError *error) {
+  const Vector vectors[] = {{"min", block->min, 1e6f},
+                            {"max", block->max, 1e6f},
+                            {"velocity", block->velocity, 1e4f},
+                            {"colour", block->colour, 1e3f},
+                            {0}};
+  return finite_vectors(name, vectors, error) && growing(name, block->min, block->max, error);
+}
+
+static bool positive(const char *object, const char *name, float value, SimError *error) {
+  if (value > 0 && value <= 1e6f) return true;
+  return sim_fail(error, "%s.%s must be in (0, 1e6] m, got %g", object, name, (double)value);
+}
+
+bool sim_drop_check(const SimDropDef *drop, const char *name, SimError *error) {
+  const Vector vectors[] = {
+      {"centre", drop->centre, 1e6f}, {"velocity", drop->velocity, 1e4f}, {"colour", drop->colour, 1e3f}, {0}};
+  return finite_vectors(name, vectors, error) && positive(name, "radius", drop->radius, error);
+}
+
+static bool check_opening(const SimEmitterDef *emitter, const char *name, float spacing, SimError *error) {
+  if (emitter->shape != SIM_EMITTER_DISC && emitter->shape != SIM_EMITTER_RECTANGLE)
+    return sim_fail(error, "%s.shape: unknown shape %d", name, (int)emitter->shape);
+  int sizes = emitter->shape == SIM_EMITTER_DISC ? 1 : 2;
+  for (int k = 0; k < sizes; k++)
+    if (!positive(name, "size", emitter->size[k], error)) return false;
+  double places = sim_emitter_places(emitter, spacing);
+  if (places > SIM_MAX_LAYER)
+    return sim_fail(error, "%s.size: a layer has %.0f particles, at most %d", name, places, SIM_MAX_LAYER);
+  return true;
+}
+
+static bool check_emitter(const SimWorldDef *def, const SimEmitterDef *emitter, const char *name, SimError *error) {
+  const Vector vectors[] = {{"position", emitter->position, 1e6f},
+                            {"rotation", emitter->rotation, 1e6f},
+                            {"rotation", emitter->rotation + 1, 1e6f},
+                            {"colour", emitter->colour, 1e3f},
+                            {0}};
+  if (!check_opening(emitter, name, 2 * def->particle_radius, error) || !finite_vectors(name, vectors, error))
+    return false;
+  const float *q = emitter->rotation;
+  if (!(fabsf(q[0]) + fabsf(q[1]) + fabsf(q[2]) + fabsf(q[3]) > 1e-6f))
+    return sim_fail(error, "%s.rotation must be a quaternion that is not zero", name);
+  if (!(emitter->speed >= 0.01f && emitter->speed <= 100))
+    return sim_fail(error, "%s.speed must be in [0.01, 100] m/s, got %g", name, (double)emitter->speed);
+  if (!isfinite(emitter->start)) return sim_fail(error, "%s.start must be finite, got %g", name, emitter->start);
+  if (!(emitter->stop >= emitter->start))
+    return sim_fail(error, "%s.stop must not be before its start, %g s, got %g", name, emitter->start, emitter->stop);
+  if (emitter->obstacle < -1 || emitter->obstacle >= def->obstacle_count)
+    return sim_fail(error, "%s.obstacle must be in [-1, %d], got %d", name, def->obstacle_count - 1, emitter->obstacle);
+  return true;
+}
+
+static bool check_sink(const SimSinkDef *sink, const char *name, SimError *error) {
+  const Vector vectors[] = {{"min", sink->min, 1e6f}, {"max", sink->max, 1e6f}, {0}};
+  return finite_vectors(name, vectors, error) && growing(name, sink->min, sink->max, error);
 }
 
 static bool check_size(const SimObstacle *obstacle, const char *name, SimError *error) {
@@ -140,19 +206,48 @@ static bool check_meshes(const SimWorldDef *def, SimError *error) {
   return true;
 }
 
-bool sim_def_check(const SimWorldDef *def, SimError *error) {
+static bool check_count(const char *name, int32_t count, const void *array, SimError *error) {
+  if (count >= 0 && count <= MAX_OBJECTS && (count == 0 || array)) return true;
+  return sim_fail(error, "%s: count must be in [0, %d], got %d%s", name, MAX_OBJECTS, count,
+                  array ? "" : " and no array");
+}
+
+static bool check_counts(const SimWorldDef *def, SimError *error) {
+  if (def->max_particles < 0 || def->max_particles > SIM_MAX_PARTICLES)
+    return sim_fail(error, "max_particles must be in [0, %d], got %d", SIM_MAX_PARTICLES, def->max_particles);
+  return check_count("blocks", def->block_count, def->blocks, error) &&
+         check_count("drops", def->drop_count, def->drops, error) &&
+         check_count("emitters", def->emitter_count, def->emitters, error) &&
+         check_count("sinks", def->sink_count, def->sinks, error) &&
+         check_count("obstacles", def->obstacle_count, def->obstacles, error);
+}
+
+static bool check_sources(const SimWorldDef *def, SimError *error) {
   char name[64];
-  if (!def || def->cookie != SIM_DEF_COOKIE) return sim_fail(error, "the Def was not made by sim_default_world_def");
-  if (!sim_method(def->solver)) return sim_fail(error, "unknown solver %d", (int)def->solver);
-  if (!check_numbers(def, error) || !check_container(def, error)) return false;
-  if (def->block_count < 0 || def->block_count > MAX_OBJECTS || (def->block_count > 0 && !def->blocks))
-    return sim_fail(error, "blocks: count must be in [0, %d], got %d", MAX_OBJECTS, def->block_count);
-  if (def->obstacle_count < 0 || def->obstacle_count > MAX_OBJECTS || (def->obstacle_count > 0 && !def->obstacles))
-    return sim_fail(error, "obstacles: count must be in [0, %d], got %d", MAX_OBJECTS, def->obstacle_count);
   for (int32_t b = 0; b < def->block_count; b++) {
     snprintf(name, sizeof name, "blocks[%d]", b);
     if (!sim_block_check(&def->blocks[b], name, error)) return false;
   }
+  for (int32_t d = 0; d < def->drop_count; d++) {
+    snprintf(name, sizeof name, "drops[%d]", d);
+    if (!sim_drop_check(&def->drops[d], name, error)) return false;
+  }
+  for (int32_t e = 0; e < def->emitter_count; e++) {
+    snprintf(name, sizeof name, "emitters[%d]", e);
+    if (!check_emitter(def, &def->emitters[e], name, error)) return false;
+  }
+  for (int32_t s = 0; s < def->sink_count; s++) {
+    snprintf(name, sizeof name, "sinks[%d]", s);
+    if (!check_sink(&def->sinks[s], name, error)) return false;
+  }
+  return true;
+}
+
+bool sim_def_check(const SimWorldDef *def, SimError *error) {
+  if (!def || def->cookie != SIM_DEF_COOKIE) return sim_fail(error, "the Def was not made by sim_default_world_def");
+  if (!sim_method(def->solver)) return sim_fail(error, "unknown solver %d", (int)def->solver);
+  if (!check_numbers(def, error) || !check_container(def, error) || !check_counts(def, error)) return false;
+  if (!check_sources(def, error)) return false;
   for (int32_t b = 0; b < def->obstacle_count; b++)
     if (!check_obstacle(&def->obstacles[b], b, error)) return false;
   return check_meshes(def, error);

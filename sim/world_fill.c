@@ -1,4 +1,4 @@
-// Filling a block with a cubic lattice of particles, at the start and while the world runs.
+// Filling a block or a ball with a cubic lattice of particles, at the start and while the world runs.
 #include <math.h>
 #include <string.h>
 
@@ -11,11 +11,13 @@
 typedef struct Lattice {
   int32_t size[3];
   float origin[3]; ///< m, the first point
+  double radius2;  ///< spacings², of the ball around its middle that cuts it, or infinite
 } Lattice;
 
 // As many points as whole spacings fit (a hundredth is forgiven for rounding), at least one in the middle.
-static double lattice_make(const SimBlockDef *block, float spacing, Lattice *lattice) {
+static double block_lattice(const SimBlockDef *block, float spacing, Lattice *lattice) {
   double points = 1;
+  lattice->radius2 = INFINITY;
   for (int k = 0; k < 3; k++) {
     double length = (double)block->max[k] - (double)block->min[k], fit = floor(length / (double)spacing + 0.01);
     points *= fit < 1 ? 1 : fit;
@@ -23,6 +25,49 @@ static double lattice_make(const SimBlockDef *block, float spacing, Lattice *lat
     lattice->origin[k] = fit < 1 ? (float)(block->min[k] + length / 2) : block->min[k] + spacing / 2;
   }
   return points;
+}
+
+// Points of a ball, in spacings, on a lattice whose middle is a point (gap = 0) or midway between two (½) along each axis.
+static double ball_points(double radius, const double gap[3]) {
+  double points = 0, y_reach = floor(radius + gap[1]) - gap[1], z_reach = floor(radius + gap[2]) - gap[2];
+  for (double z = -z_reach; z <= z_reach; z++)
+    for (double y = -y_reach; y <= y_reach; y++) {
+      double rest = radius * radius - y * y - z * z;
+      if (rest >= 0) points += 2 * (floor(sqrt(rest) + gap[0]) - gap[0]) + 1;
+    }
+  return points;
+}
+
+// Points come and go in whole shells as the radius grows. So of the lattices that are symmetric about the centre, and of
+// cuts up to a fifth of a spacing away from the radius, the one is taken that is nearest in volume.
+static double drop_lattice(const SimDropDef *drop, float spacing, Lattice *lattice) {
+  const double radius = (double)drop->radius / (double)spacing, volume = 4.18879020478639 * radius * radius * radius;
+  double best = 1, best_cut = 0.1, best_gap[3] = {0, 0, 0};
+  if (volume > SIM_MAX_PARTICLES) return volume;
+  for (int k = 0; k < 36; k++) {
+    // The nearest cuts first; a hair more, so that no point lies on the cut.
+    double cut = radius * 1.000001 + 0.05 * ((k / 4 + 1) / 2) * (k / 4 % 2 ? 1 : -1);
+    const double gap[3] = {k % 4 > 0 ? 0.5 : 0, k % 4 > 1 ? 0.5 : 0, k % 4 > 2 ? 0.5 : 0};
+    double points = cut > 0 ? ball_points(cut, gap) : 0;
+    if (points == 0 || fabs(points - volume) >= fabs(best - volume)) continue;
+    best = points, best_cut = cut;
+    memcpy(best_gap, gap, sizeof gap);
+  }
+  lattice->radius2 = best_cut * best_cut;
+  for (int k = 0; k < 3; k++) {
+    lattice->size[k] = (int32_t)(2 * (floor(best_cut + best_gap[k]) - best_gap[k])) + 1;
+    lattice->origin[k] = drop->centre[k] - 0.5f * spacing * (float)(lattice->size[k] - 1);
+  }
+  return best;
+}
+
+static bool lattice_has(const Lattice *lattice, const int32_t at[3]) {
+  double distance2 = 0;
+  for (int k = 0; k < 3; k++) {
+    double x = at[k] - 0.5 * (lattice->size[k] - 1);
+    distance2 += x * x;
+  }
+  return distance2 <= lattice->radius2;
 }
 
 // Counter-based random numbers (splitmix64: Steele, Lea, Flood, 2014): the value depends on seed, particle and axis only.
@@ -64,63 +109,101 @@ static bool occupied(const SimWorld *world, const float point[3]) {
   return false;
 }
 
-static bool make_room(SimWorld *world, double points, SimError *error) {
-  double wanted = points + world->particles.count;
-  if (wanted > SIM_MAX_PARTICLES)
-    return sim_fail(error, "too many particles: %.0f, at most %d", wanted, SIM_MAX_PARTICLES);
-  int32_t capacity = (int32_t)wanted;
-  // Pouring adds a little many times: grow by half.
-  if (capacity > world->particles.capacity && world->particles.count > 0 && capacity < world->particles.capacity * 1.5)
-    capacity = (int32_t)fmin(world->particles.capacity * 1.5, SIM_MAX_PARTICLES);
-  if (!sim_particles_reserve(&world->particles, capacity) ||
-      !sim_reserve_keep((void **)&world->colour, 3 * (size_t)world->particles.capacity, sizeof(float)))
-    return sim_fail(error, "out of memory");
-  return true;
+/// What is being filled.
+typedef struct Fill {
+  Lattice lattice;
+  double points; ///< of the lattice, more than fit into an int32_t perhaps
+  const float *velocity, *colour;
+  bool start;
+  bool among; ///< there are particles already
+} Fill;
+
+static bool is_free(const SimWorld *world, const Fill *fill, const float point[3]) {
+  return sim_boundary_free(&world->boundary, point) && !(fill->among && occupied(world, point));
 }
 
-static void add(SimWorld *world, const SimBlockDef *block, const float point[3]) {
-  uint32_t id = (uint32_t)world->particles.count;
-  memcpy(world->colour + 3 * (size_t)id, block->colour, sizeof block->colour);
-  sim_particles_add(&world->particles, id, point, block->velocity);
+static void add(SimWorld *world, const Fill *fill, float point[3]) {
+  float from[3] = {point[0], point[1], point[2]}, jitter = fill->start ? world->def.jitter * world->cubic.spacing : 0;
+  for (int k = 0; k < 3 && jitter > 0; k++)
+    point[k] += jitter * random_share(world->def.seed, (uint64_t)world->particles.count, (uint64_t)k);
+  sim_boundary_clamp(&world->boundary, NULL, from, point);
+  sim_world_add(world, point, fill->velocity, fill->colour);
+}
+
+// Go through the lattice and add a particle at each free point, at most `room` of them. Returns the number of free points.
+static int32_t go_through(SimWorld *world, const Fill *fill, int32_t room) {
+  const Lattice *lattice = &fill->lattice;
+  int32_t found = 0;
+  for (int32_t z = 0; z < lattice->size[2]; z++)
+    for (int32_t y = 0; y < lattice->size[1]; y++)
+      for (int32_t x = 0; x < lattice->size[0]; x++) {
+        const int32_t at[3] = {x, y, z};
+        float point[3];
+        if (!lattice_has(lattice, at)) continue;
+        for (int k = 0; k < 3; k++) point[k] = lattice->origin[k] + world->cubic.spacing * (float)at[k];
+        if (is_free(world, fill, point) && found++ < room) add(world, fill, point);
+      }
+  return found;
+}
+
+static void raise_limits(SimWorld *world, const Fill *fill) {
+  const float *v = fill->velocity;
+  float speed = sqrtf(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+  if (10 * speed > world->speed_limit) world->speed_limit = 10 * speed;
+}
+
+static bool take_colour(SimWorld *world, const float colour[3], SimError *error) {
+  if (colour[0] == 0 && colour[1] == 0 && colour[2] == 0) return true;
+  return sim_particles_colour(&world->particles, sim_water_colour) || sim_fail(error, "out of memory");
+}
+
+static int32_t run(SimWorld *world, Fill *fill, SimError *error) {
+  if (fill->points > SIM_MAX_PARTICLES)
+    return sim_fail(error, "too many particles: %.0f, at most %d", fill->points, SIM_MAX_PARTICLES), -1;
+  int32_t wanted = (int32_t)fill->points;
+  fill->among = world->particles.count > 0;
+  if (!take_colour(world, fill->colour, error) || !sort_present(world, error)) return -1;
+  // Particles that make way for others: no more than find a place.
+  if (world->def.reuse && wanted > sim_world_limit(world) - world->particles.count) wanted = go_through(world, fill, 0);
+  int32_t room = sim_world_make_way(world, wanted, error);
+  if (room < 0) return -1;
+  int32_t found = go_through(world, fill, room), added = found < room ? found : room;
+  if (fill->start && found > room)
+    return sim_fail(error, "too many particles at the start: more than %d", sim_world_limit(world)), -1;
+  raise_limits(world, fill);
+  if (fill->start)
+    world->counts.left_out += (int32_t)fill->points - added;
+  else
+    world->counts.emitted += added;
+  if (added > 0) world->settled = false;
+  return added;
 }
 
 int32_t sim_fill_block(SimWorld *world, const SimBlockDef *block, bool start, SimError *error) {
-  Lattice lattice;
-  float spacing = world->cubic.spacing, jitter = start ? world->def.jitter * spacing : 0;
-  double points = lattice_make(block, spacing, &lattice);
-  int32_t before = world->particles.count, left_out = 0;
-  if (!make_room(world, points, error) || !sort_present(world, error)) return -1;
-  for (int32_t z = 0; z < lattice.size[2]; z++)
-    for (int32_t y = 0; y < lattice.size[1]; y++)
-      for (int32_t x = 0; x < lattice.size[0]; x++) {
-        const int32_t at[3] = {x, y, z};
-        float point[3];
-        for (int k = 0; k < 3; k++) point[k] = lattice.origin[k] + spacing * (float)at[k];
-        if (!sim_boundary_free(&world->boundary, point) || (before > 0 && occupied(world, point))) {
-          left_out++;
-          continue;
-        }
-        float from[3] = {point[0], point[1], point[2]};
-        for (int k = 0; k < 3 && jitter > 0; k++)
-          point[k] += jitter * random_share(world->def.seed, (uint64_t)world->particles.count, (uint64_t)k);
-        sim_boundary_clamp(&world->boundary, NULL, from, point);
-        add(world, block, point);
-      }
-  if (block->colour[0] != 0 || block->colour[1] != 0 || block->colour[2] != 0) world->coloured = true;
-  float speed = sqrtf(block->velocity[0] * block->velocity[0] + block->velocity[1] * block->velocity[1] +
-                      block->velocity[2] * block->velocity[2]);
-  if (10 * speed > world->speed_limit) world->speed_limit = 10 * speed;
-  if (start) world->counts.left_out += left_out;
-  if (world->particles.count > before) world->settled = false;
-  return world->particles.count - before;
+  Fill fill = {.velocity = block->velocity, .colour = block->colour, .start = start};
+  fill.points = block_lattice(block, world->cubic.spacing, &fill.lattice);
+  return run(world, &fill, error);
+}
+
+int32_t sim_fill_drop(SimWorld *world, const SimDropDef *drop, bool start, SimError *error) {
+  Fill fill = {.velocity = drop->velocity, .colour = drop->colour, .start = start};
+  fill.points = drop_lattice(drop, world->cubic.spacing, &fill.lattice);
+  return run(world, &fill, error);
+}
+
+static bool may_add(const SimWorld *world, SimError *error) {
+  if (world->failed && error) *error = world->failure;
+  return !world->failed;
 }
 
 int32_t sim_world_pour(SimWorld *world, const SimBlockDef *block, SimError *error) {
-  if (world->failed) {
-    if (error) *error = world->failure;
-    return -1;
-  }
-  if (!sim_block_check(block, "block", error)) return -1;
+  if (!may_add(world, error) || !sim_block_check(block, "block", error)) return -1;
   int32_t added = sim_fill_block(world, block, false, error);
-  return added > 0 && !sim_world_settle(world, error) ? -1 : added;
+  return sim_world_settle(world, error) ? added : -1;
+}
+
+int32_t sim_world_drop(SimWorld *world, const SimDropDef *drop, SimError *error) {
+  if (!may_add(world, error) || !sim_drop_check(drop, "drop", error)) return -1;
+  int32_t added = sim_fill_drop(world, drop, false, error);
+  return sim_world_settle(world, error) ? added : -1;
 }
