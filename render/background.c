@@ -20,7 +20,6 @@ void render_background_destroy(RenderPicture *picture) {
   RenderBackground *background = &picture->background;
   gpu_program_destroy(&background->sky_program);
   gpu_program_destroy(&background->floor_program);
-  gpu_program_destroy(&background->obstacle_program);
   gpu_program_destroy(&background->pane_program);
   gpu_program_destroy(&background->edge_program[0]);
   gpu_program_destroy(&background->edge_program[1]);
@@ -59,21 +58,9 @@ static bool draw_world(RenderPicture *picture, RenderError *error) {
 
 // Output: colour and depth where a body is nearer.
 static bool draw_obstacles(RenderPicture *picture, RenderError *error) {
-  RenderBackground *background = &picture->background;
-  if (picture->obstacles.count == 0) return true;
-  const GpuProgramDesc desc = {.label = "obstacles", .file = "obstacles.glsl", .defines = picture->defines};
-  if (!gpu_program_prepare(&background->obstacle_program, &desc, error)) return false;
-  GpuDraw draw = {
-      .program = &background->obstacle_program,
-      .target = &background->target,
-      .vertices = 36 * picture->obstacles.count,
-      .depth = GPU_DEPTH_WRITE,
-      .cull = GPU_CULL_FRONT, // the far sides of the box are in view also from within it
-      .in = sunlit_inputs(picture),
-  };
-  draw.in.storage[0] = &picture->obstacles.bodies;
-  gpu_draw(picture->gpu, &draw);
-  return true;
+  const GpuDraw draw = {
+      .target = &picture->background.target, .depth = GPU_DEPTH_WRITE, .in = sunlit_inputs(picture)};
+  return render_obstacles_draw(picture, false, draw, error);
 }
 
 static bool draw_edges(RenderPicture *picture, const GpuTarget *out, bool front, RenderError *error) {
