@@ -4,8 +4,12 @@
 
 #include <stdio.h>
 
-#define EDGE_COUNT 12
-#define WALL_COUNT 4
+// Quads of edges.glsl and panes.glsl, for each shape of container: a glass has two arcs of 96 pieces and two outlines,
+// and one wall in 96 pieces.
+static const int32_t edge_quads[] = {[SIM_CONTAINER_BOX] = 12, [SIM_CONTAINER_GLASS] = 2 * 96 + 2};
+static const int32_t wall_quads[] = {[SIM_CONTAINER_BOX] = 4, [SIM_CONTAINER_GLASS] = 96};
+static const char *const container_defines[] = {
+    [SIM_CONTAINER_BOX] = "", [SIM_CONTAINER_GLASS] = "#define GLASS 1\n"};
 
 bool render_background_resize(RenderPicture *picture, RenderError *error) {
   RenderBackground *background = &picture->background;
@@ -66,14 +70,16 @@ static bool draw_obstacles(RenderPicture *picture, RenderError *error) {
 static bool draw_edges(RenderPicture *picture, const GpuTarget *out, bool front, RenderError *error) {
   if (picture->block.container_min[3] == 0) return true;
   GpuProgram *program = &picture->background.edge_program[front];
-  char defines[sizeof picture->defines + 32];
-  snprintf(defines, sizeof defines, "%s%s", picture->defines, front ? "#define FRONT 1\n" : "");
+  const SimContainerShape shape = picture->frame->container.shape;
+  char defines[sizeof picture->defines + 64];
+  snprintf(defines, sizeof defines, "%s%s%s", picture->defines, container_defines[shape],
+           front ? "#define FRONT 1\n" : "");
   const GpuProgramDesc desc = {.label = front ? "front edges" : "back edges", .file = "edges.glsl", .defines = defines};
   if (!gpu_program_prepare(program, &desc, error)) return false;
   gpu_draw(picture->gpu, &(GpuDraw){
                              .program = program,
                              .target = out,
-                             .vertices = 6 * EDGE_COUNT,
+                             .vertices = 6 * edge_quads[shape],
                              .depth = GPU_DEPTH_TEST,
                              .blend = GPU_BLEND_OVER,
                              .in = {.frame = &picture->uniforms},
@@ -93,12 +99,15 @@ bool render_background_draw(RenderPicture *picture, RenderError *error) {
 static bool draw_panes(RenderPicture *picture, RenderError *error) {
   if (picture->block.container_min[3] == 0) return true;
   GpuProgram *program = &picture->background.pane_program;
-  const GpuProgramDesc desc = {.label = "glass", .file = "panes.glsl", .defines = picture->defines};
+  const SimContainerShape shape = picture->frame->container.shape;
+  char defines[sizeof picture->defines + 32];
+  snprintf(defines, sizeof defines, "%s%s", picture->defines, container_defines[shape]);
+  const GpuProgramDesc desc = {.label = "glass", .file = "panes.glsl", .defines = defines};
   if (!gpu_program_prepare(program, &desc, error)) return false;
   gpu_draw(picture->gpu, &(GpuDraw){
                              .program = program,
                              .target = &picture->target,
-                             .vertices = 6 * WALL_COUNT,
+                             .vertices = 6 * wall_quads[shape],
                              .depth = GPU_DEPTH_OFF,
                              .blend = GPU_BLEND_OVER,
                              .in = {.frame = &picture->uniforms},
