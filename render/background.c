@@ -4,9 +4,9 @@
 
 #include <stdio.h>
 
-// Quads of edges.glsl and panes.glsl, for each shape of container: a glass has two arcs of 96 pieces and two outlines,
+// Quads of edges.glsl and panes.glsl, for each shape of container: a glass has three circles of 96 pieces and two outlines,
 // and one wall in 96 pieces.
-static const int32_t edge_quads[] = {[SIM_CONTAINER_BOX] = 12, [SIM_CONTAINER_GLASS] = 2 * 96 + 2};
+static const int32_t edge_quads[] = {[SIM_CONTAINER_BOX] = 12, [SIM_CONTAINER_GLASS] = 3 * 96 + 2};
 static const int32_t wall_quads[] = {[SIM_CONTAINER_BOX] = 4, [SIM_CONTAINER_GLASS] = 96};
 static const char *const container_defines[] = {
     [SIM_CONTAINER_BOX] = "", [SIM_CONTAINER_GLASS] = "#define GLASS 1\n"};

@@ -1,7 +1,7 @@
 // The edges of the container as thin bright lines, antialiased by coverage. What lies on a wall that turns its outside to
 // the eye is in front of the water, the rest is behind it; FRONT chooses. The open top has no wall.
-// A tank has twelve straight edges. A GLASS has a rim and a foot, each cut at the two places where the line of sight
-// grazes the wall, and there two upright outlines.
+// A tank has twelve straight edges. A GLASS has a rim, which shows how thick the wall is, and a foot, each cut at the two
+// places where the line of sight grazes the wall, and there two upright outlines.
 #include "frame.glsl"
 
 #ifdef VERTEX_STAGE
@@ -21,7 +21,7 @@ struct Piece {
 #include "glass.glsl"
 const int PIECES = 96; // of an arc
 
-// Rim and foot, then the outlines.
+// Rim, the rim's inside and foot, then the outlines.
 Piece piece(int i) {
   Glass glass = glass_of_container();
 #ifdef FRONT
@@ -30,19 +30,20 @@ Piece piece(int i) {
   vec2 arc = vec2(glass.front.y, glass.front.x + 2.0 * PI);
 #endif
   Piece piece;
-  bool upright = i >= 2 * PIECES;
-  bool on_rim = i < PIECES;
+  bool upright = i >= 3 * PIECES;
+  bool on_rim = i < 2 * PIECES, inside = on_rim && i >= PIECES;
+  if (inside) glass.radius *= INSIDE;
   float share = float(i % PIECES) / float(PIECES), next = share + 1.0 / float(PIECES);
-  float from = upright ? (i == 2 * PIECES ? arc.x : arc.y) : mix(arc.x, arc.y, share);
+  float from = upright ? (i == 3 * PIECES ? arc.x : arc.y) : mix(arc.x, arc.y, share);
   float to = upright ? from : mix(arc.x, arc.y, next);
   piece.a = to_view(on_wall(glass, from, on_rim ? container_max.y : container_min.y));
   piece.b = to_view(on_wall(glass, to, on_rim || upright ? container_max.y : container_min.y));
   mat3 turn = mat3(world_to_view);
   piece.way_a = upright ? turn * vec3(0.0, 1.0, 0.0) : turn * vec3(-sin(from), 0.0, cos(from));
   piece.way_b = upright ? piece.way_a : turn * vec3(-sin(to), 0.0, cos(to));
-  piece.tone = on_rim ? 1.0 : upright ? 0.8 : 0.55;
+  piece.tone = inside ? 0.7 : on_rim ? 1.0 : upright ? 0.9 : 0.7;
   piece.overlap = upright ? 0.5 : 0.0;
-  piece.width = 0.003;
+  piece.width = 0.0018;
   piece.wanted = arc.y > arc.x;
 #ifndef FRONT
   piece.wanted = piece.wanted && !upright;

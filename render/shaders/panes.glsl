@@ -50,7 +50,7 @@ void main() {
   vec3 light = sky(reflect(-v, n)) * mirror;
 #ifdef GLASS
   // Near its outlines light comes a longer way through the wall, which is then sea green.
-  float tint = 1.0 - exp(-0.02 / max(facing, 0.04));
+  float tint = 1.0 - exp(-0.035 / max(facing, 0.04));
   light += vec3(0.16, 0.34, 0.33) * tint;
   mirror += tint;
   // An upright wall mirrors the sun downwards, past an eye above; what gleams is the roundness of its two surfaces, all
