@@ -50,7 +50,8 @@ static bool place_body(Body *body, const SimObstacle *o) {
 static bool size_body(Body *body, const SimObstacle *o) {
   const float *s = o->size;
   // A capsule that is shorter than wide is a ball.
-  const float length = s[1] > s[0] ? s[1] : s[0];
+  if (o->shape == SIM_CAPSULE && !(s[1] > 0)) return false;
+  const float length = fmaxf(s[1], s[0]);
   // clang-format off
   const float full[][3] = {
     [SIM_BOX]      = { s[0], s[1],   s[2] },

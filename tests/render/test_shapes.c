@@ -337,15 +337,13 @@ static void test_meshes(void **state) {
 // Does the sun shine on a point of a surface? 1 or 0; −1 where a little to any side along it, it is otherwise.
 static int sunlit(const SimObstacle *o, const double point[3], const double normal[3], const float sun[3]) {
   int lit = 0;
-  for (int i = 0; i < 7; ++i) {
+  for (int i = 0; i < 27; ++i) {
+    const double aside[3] = {0.02 * (i % 3 - 1), 0.02 * (i / 3 % 3 - 1), 0.02 * (i / 9 - 1)};
     Ray ray = {{point[0], point[1], point[2]}, {(double)sun[0], (double)sun[1], (double)sun[2]}};
-    const int axis = (i - 1) / 2;
-    for (int k = 0; k < 3 && i > 0; ++k) {
-      ray.origin[k] += (i & 1 ? 0.02 : -0.02) * ((k == axis) - normal[axis] * normal[k]);
-    }
+    for (int k = 0; k < 3; ++k) ray.origin[k] += aside[k] - dot(aside, normal) * normal[k];
     lit += !cast_ray(o, &ray).hit;
   }
-  return lit == 7 ? 1 : lit == 0 ? 0 : -1;
+  return lit == 27 ? 1 : lit == 0 ? 0 : -1;
 }
 
 // Pictures of the same: where the sun shines, shadows change nothing, and where it does not, there might as well be none.
@@ -391,11 +389,11 @@ static void check_shadow(const SimObstacle *obstacle, bool on_itself) {
   settings.sun = settings.shadow = true;
   pictures[SHADOWS] = harness_draw(&harness, &frame, &view, &settings);
   int counts[2][2] = {{0}}; // on floor and body, shaded and in the sun
-  for (int32_t i = 0; i < WIDTH * HEIGHT; ++i) {
+  for (int32_t i = 0; i < WIDTH * HEIGHT; i += 7) {
     check_pixel_light(obstacle, &settings, pictures, &view, i, counts);
   }
-  assert_true(counts[0][0] > 100 && counts[0][1] > 1000 && counts[1][1] > 100);
-  assert_true(!on_itself || counts[1][0] > 50);
+  assert_true(counts[0][0] > 30 && counts[0][1] > 500 && counts[1][1] > 50);
+  assert_true(!on_itself || counts[1][0] > 30);
   for (int i = 0; i < 3; ++i) free(pictures[i]);
   harness_close(&harness);
 }
