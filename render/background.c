@@ -8,8 +8,7 @@
 // and one wall in 96 pieces.
 static const int32_t edge_quads[] = {[SIM_CONTAINER_BOX] = 12, [SIM_CONTAINER_GLASS] = 3 * 96 + 2};
 static const int32_t wall_quads[] = {[SIM_CONTAINER_BOX] = 4, [SIM_CONTAINER_GLASS] = 96};
-static const char *const container_defines[] = {
-    [SIM_CONTAINER_BOX] = "", [SIM_CONTAINER_GLASS] = "#define GLASS 1\n"};
+static const char *const container_defines[] = {[SIM_CONTAINER_BOX] = "", [SIM_CONTAINER_GLASS] = "#define GLASS 1\n"};
 
 bool render_background_resize(RenderPicture *picture, RenderError *error) {
   RenderBackground *background = &picture->background;
@@ -62,8 +61,7 @@ static bool draw_world(RenderPicture *picture, RenderError *error) {
 
 // Output: colour and depth where a body is nearer.
 static bool draw_obstacles(RenderPicture *picture, RenderError *error) {
-  const GpuDraw draw = {
-      .target = &picture->background.target, .depth = GPU_DEPTH_WRITE, .in = sunlit_inputs(picture)};
+  const GpuDraw draw = {.target = &picture->background.target, .depth = GPU_DEPTH_WRITE, .in = sunlit_inputs(picture)};
   return render_obstacles_draw(picture, false, draw, error);
 }
 

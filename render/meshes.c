@@ -22,12 +22,12 @@
 // The triangles that can be drawn and what is known of them; the arrays live as long as a mesh is being taken in.
 typedef struct Faces {
   int32_t count;
-  const float *vertex;  // m, (vertices, 3)
-  int32_t *corner;      // (count, 3), indices of vertices
-  double (*normal)[3];  // unit, (count)
-  float *angle;         // radians, (count, 3), of the face at the corner
-  int32_t *fan_start;   // (vertices + 1)
-  int32_t *fan;         // (3 count), the faces around vertex v: fan_start[v] … fan_start[v + 1] − 1
+  const float *vertex; // m, (vertices, 3)
+  int32_t *corner;     // (count, 3), indices of vertices
+  double (*normal)[3]; // unit, (count)
+  float *angle;        // radians, (count, 3), of the face at the corner
+  int32_t *fan_start;  // (vertices + 1)
+  int32_t *fan;        // (3 count), the faces around vertex v: fan_start[v] … fan_start[v + 1] − 1
 } Faces;
 
 static bool faces_create(Faces *faces, const SimMesh *mesh) {

@@ -276,18 +276,19 @@ static void test_absurd_meshes(void **state) {
   test_frame_add(t, 1, 0.5f, 0.5f);
   uint8_t *without = draw_default(&harness, t, &front);
   const float vertex[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, NAN, 0, 0, 0, INFINITY, 0, 2e6f, 0, 0, 0.5f, 0.5f, 0};
-  const int32_t bad[] = {0, 1, 3,  0, 4, 1, 5, 0, 1, 0, 1, 7, 0, -1, 2, INT32_MIN, INT32_MAX, 0,
-                         1, 1, 2,  0, 0, 0, 1, 6, 2};
+  const int32_t bad[] = {0, 1,         3,         0, 4, 1, 5, 0, 1, 0, 1, 7, 0, -1,
+                         2, INT32_MIN, INT32_MAX, 0, 1, 1, 2, 0, 0, 0, 1, 6, 2};
   const int32_t one_good[] = {0, 1, 9, 0, 1, 2, 3, 4, 5};
   const SimMesh absurd[] = {
-      {7, 9, vertex, bad}, {0, 9, vertex, bad},       {7, 0, vertex, bad},        {-3, 9, vertex, bad},
-      {7, -1, vertex, bad}, {7, 9, NULL, bad},         {7, 9, vertex, NULL},       {INT32_MIN, INT32_MIN, vertex, bad},
+      {7, 9, vertex, bad},  {0, 9, vertex, bad}, {7, 0, vertex, bad},  {-3, 9, vertex, bad},
+      {7, -1, vertex, bad}, {7, 9, NULL, bad},   {7, 9, vertex, NULL}, {INT32_MIN, INT32_MIN, vertex, bad},
       {7, 1, vertex, bad},
   };
   SimObstacle bodies[sizeof absurd / sizeof absurd[0] + 1];
   const int32_t count = (int32_t)(sizeof bodies / sizeof bodies[0]);
   for (int32_t i = 0; i < count; ++i) {
-    bodies[i] = (SimObstacle){SIM_MESH, {0}, {1, 0.5f, 1}, {0, 0, 0, 1}, {1, 0, 0}, 0, i + 1 < count ? &absurd[i] : NULL};
+    bodies[i] =
+        (SimObstacle){SIM_MESH, {0}, {1, 0.5f, 1}, {0, 0, 0, 1}, {1, 0, 0}, 0, i + 1 < count ? &absurd[i] : NULL};
   }
   t->frame.obstacle_count = count;
   t->frame.obstacles = bodies;

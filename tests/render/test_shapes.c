@@ -83,7 +83,8 @@ static Hit cast_mesh(const SimObstacle *o, const Ray *ray) {
     }
     for (int c = 0; c < 3; ++c) {
       const double *a = v[c], *b = v[(c + 1) % 3], *d = ray->direction;
-      sign[c] = d[0] * (a[1] * b[2] - a[2] * b[1]) + d[1] * (a[2] * b[0] - a[0] * b[2]) + d[2] * (a[0] * b[1] - a[1] * b[0]);
+      sign[c] =
+          d[0] * (a[1] * b[2] - a[2] * b[1]) + d[1] * (a[2] * b[0] - a[0] * b[2]) + d[2] * (a[0] * b[1] - a[1] * b[0]);
     }
     if (!(sign[0] < 0 && sign[1] < 0 && sign[2] < 0)) continue; // past it, or from behind
     for (int k = 0; k < 3; ++k) {
@@ -102,7 +103,9 @@ static Hit cast_ray(const SimObstacle *o, const Ray *ray) {
   for (int k = 0; k < 3; ++k) own.origin[k] -= (double)o->position[k];
   harness_to_body(own.origin, o->rotation);
   harness_to_body(own.direction, o->rotation);
-  Hit hit = o->shape == SIM_STAIRS ? cast_stairs(o, &own) : o->shape == SIM_CAPSULE ? cast_capsule(o, &own) : cast_mesh(o, &own);
+  Hit hit = o->shape == SIM_STAIRS    ? cast_stairs(o, &own)
+            : o->shape == SIM_CAPSULE ? cast_capsule(o, &own)
+                                      : cast_mesh(o, &own);
   harness_from_body(hit.normal, o->rotation);
   return hit;
 }
@@ -133,9 +136,12 @@ static SimFrame frame_with(const SimObstacle *obstacle) {
 
 static const RenderView front = {{-0.9f, 1.6f, 3}, {0, 0.5f, 0}, 35};
 
-#define TURN_NONE {0, 0, 0, 1}
-#define TURN_TILTED {0.2f, 0.3f, 0.1f, 0.9273618f}
-#define GREY {0.6f, 0.7f, 0.8f}
+#define TURN_NONE                                                                                                      \
+  { 0, 0, 0, 1 }
+#define TURN_TILTED                                                                                                    \
+  { 0.2f, 0.3f, 0.1f, 0.9273618f }
+#define GREY                                                                                                           \
+  { 0.6f, 0.7f, 0.8f }
 
 static const SimObstacle stairs_level = {SIM_STAIRS, {1.2f, 0.9f, 0.7f}, {0, 0.45f, 0}, TURN_NONE, GREY, 5, NULL};
 static const SimObstacle stairs_tilted = {SIM_STAIRS, {1.1f, 0.5f, 0.8f}, {0.1f, 0.6f, 0}, TURN_TILTED, GREY, 3, NULL};
@@ -349,8 +355,8 @@ static int sunlit(const SimObstacle *o, const double point[3], const double norm
 // Pictures of the same: where the sun shines, shadows change nothing, and where it does not, there might as well be none.
 enum { SHADOWS, NO_SHADOWS, NO_SUN };
 
-static void check_pixel_light(const SimObstacle *o, const RenderSettings *s, uint8_t *const pictures[3], const RenderView *view,
-                              int32_t i, int counts[2][2]) {
+static void check_pixel_light(const SimObstacle *o, const RenderSettings *s, uint8_t *const pictures[3],
+                              const RenderView *view, int32_t i, int counts[2][2]) {
   Hit hit;
   if (!cast_pixel(o, view, i % WIDTH, i / WIDTH, &hit)) return;
   const Ray ray = harness_ray(view, WIDTH, HEIGHT, i % WIDTH, i / WIDTH);
