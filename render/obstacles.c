@@ -10,11 +10,10 @@
 // struct Body of body.glsl, std430.
 typedef struct Body {
   float position[3], unused;
-  float half_size[3],
-      detail;        // m: of the box around the body, along its own axes; stairs: number of steps; capsule: half
-                     // the length of its straight part, m
-  float rotation[4]; // unit quaternion x, y, z, w
-  float colour[4];   // linear; –
+  float half_size[3]; // m, of the box around the body, along its own axes
+  float detail;       // stairs: number of steps; capsule: half the length of its straight part, m
+  float rotation[4];  // unit quaternion x, y, z, w
+  float colour[4];    // linear; –
 } Body;
 
 static const char *const shape_names[SIM_SHAPE_COUNT] = {"boxes",    "spheres", "cylinders",
