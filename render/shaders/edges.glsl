@@ -43,7 +43,7 @@ Piece piece(int i) {
   piece.way_b = upright ? piece.way_a : turn * vec3(-sin(to), 0.0, cos(to));
   piece.tone = inside ? 0.7 : on_rim ? 1.0 : upright ? 0.9 : 0.7;
   piece.overlap = upright ? 0.5 : 0.0;
-  piece.width = 0.0018;
+  piece.width = 0.0023;
   piece.wanted = arc.y > arc.x;
 #ifndef FRONT
   piece.wanted = piece.wanted && !upright;
