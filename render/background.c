@@ -4,8 +4,11 @@
 
 #include <stdio.h>
 
-#define EDGE_COUNT 12
-#define WALL_COUNT 4
+// Quads of edges.glsl and panes.glsl, for each shape of container: a glass has three circles of 96 pieces and two outlines,
+// and one wall in 96 pieces.
+static const int32_t edge_quads[] = {[SIM_CONTAINER_BOX] = 12, [SIM_CONTAINER_GLASS] = 3 * 96 + 2};
+static const int32_t wall_quads[] = {[SIM_CONTAINER_BOX] = 4, [SIM_CONTAINER_GLASS] = 96};
+static const char *const container_defines[] = {[SIM_CONTAINER_BOX] = "", [SIM_CONTAINER_GLASS] = "#define GLASS 1\n"};
 
 bool render_background_resize(RenderPicture *picture, RenderError *error) {
   RenderBackground *background = &picture->background;
@@ -20,7 +23,6 @@ void render_background_destroy(RenderPicture *picture) {
   RenderBackground *background = &picture->background;
   gpu_program_destroy(&background->sky_program);
   gpu_program_destroy(&background->floor_program);
-  gpu_program_destroy(&background->obstacle_program);
   gpu_program_destroy(&background->pane_program);
   gpu_program_destroy(&background->edge_program[0]);
   gpu_program_destroy(&background->edge_program[1]);
@@ -59,34 +61,23 @@ static bool draw_world(RenderPicture *picture, RenderError *error) {
 
 // Output: colour and depth where a body is nearer.
 static bool draw_obstacles(RenderPicture *picture, RenderError *error) {
-  RenderBackground *background = &picture->background;
-  if (picture->obstacles.count == 0) return true;
-  const GpuProgramDesc desc = {.label = "obstacles", .file = "obstacles.glsl", .defines = picture->defines};
-  if (!gpu_program_prepare(&background->obstacle_program, &desc, error)) return false;
-  GpuDraw draw = {
-      .program = &background->obstacle_program,
-      .target = &background->target,
-      .vertices = 36 * picture->obstacles.count,
-      .depth = GPU_DEPTH_WRITE,
-      .cull = GPU_CULL_FRONT, // the far sides of the box are in view also from within it
-      .in = sunlit_inputs(picture),
-  };
-  draw.in.storage[0] = &picture->obstacles.bodies;
-  gpu_draw(picture->gpu, &draw);
-  return true;
+  const GpuDraw draw = {.target = &picture->background.target, .depth = GPU_DEPTH_WRITE, .in = sunlit_inputs(picture)};
+  return render_obstacles_draw(picture, false, draw, error);
 }
 
 static bool draw_edges(RenderPicture *picture, const GpuTarget *out, bool front, RenderError *error) {
   if (picture->block.container_min[3] == 0) return true;
   GpuProgram *program = &picture->background.edge_program[front];
-  char defines[sizeof picture->defines + 32];
-  snprintf(defines, sizeof defines, "%s%s", picture->defines, front ? "#define FRONT 1\n" : "");
+  const SimContainerShape shape = picture->frame->container.shape;
+  char defines[sizeof picture->defines + 64];
+  snprintf(defines, sizeof defines, "%s%s%s", picture->defines, container_defines[shape],
+           front ? "#define FRONT 1\n" : "");
   const GpuProgramDesc desc = {.label = front ? "front edges" : "back edges", .file = "edges.glsl", .defines = defines};
   if (!gpu_program_prepare(program, &desc, error)) return false;
   gpu_draw(picture->gpu, &(GpuDraw){
                              .program = program,
                              .target = out,
-                             .vertices = 6 * EDGE_COUNT,
+                             .vertices = 6 * edge_quads[shape],
                              .depth = GPU_DEPTH_TEST,
                              .blend = GPU_BLEND_OVER,
                              .in = {.frame = &picture->uniforms},
@@ -106,12 +97,15 @@ bool render_background_draw(RenderPicture *picture, RenderError *error) {
 static bool draw_panes(RenderPicture *picture, RenderError *error) {
   if (picture->block.container_min[3] == 0) return true;
   GpuProgram *program = &picture->background.pane_program;
-  const GpuProgramDesc desc = {.label = "glass", .file = "panes.glsl", .defines = picture->defines};
+  const SimContainerShape shape = picture->frame->container.shape;
+  char defines[sizeof picture->defines + 32];
+  snprintf(defines, sizeof defines, "%s%s", picture->defines, container_defines[shape]);
+  const GpuProgramDesc desc = {.label = "glass", .file = "panes.glsl", .defines = defines};
   if (!gpu_program_prepare(program, &desc, error)) return false;
   gpu_draw(picture->gpu, &(GpuDraw){
                              .program = program,
                              .target = &picture->target,
-                             .vertices = 6 * WALL_COUNT,
+                             .vertices = 6 * wall_quads[shape],
                              .depth = GPU_DEPTH_OFF,
                              .blend = GPU_BLEND_OVER,
                              .in = {.frame = &picture->uniforms},

@@ -119,7 +119,8 @@ static void write_environment(RenderFrameBlock *block, const RenderPicture *pict
   set4(block->floor_colour[1], settings->floor_colour[1], 0);
   const float plane[4] = {floor_level(picture, box), settings->tile_size, 24 * across, 0};
   memcpy(block->floor_plane, plane, sizeof plane);
-  const bool visible = settings->container_visible && picture->frame->has_container;
+  const bool visible =
+      settings->container_visible && picture->frame->has_container && (unsigned)container->shape <= SIM_CONTAINER_GLASS;
   set4(block->container_min, container->min, visible ? 1 : 0);
   set4(block->container_max, container->max, across);
 }

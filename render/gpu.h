@@ -161,6 +161,7 @@ typedef struct GpuDraw {
   const GpuProgram *program;
   const GpuTarget *target;
   int32_t vertices; // of triangles; 0: one triangle that covers the target
+  int32_t first_vertex;
   GpuDepth depth;
   GpuBlend blend;
   GpuCull cull;

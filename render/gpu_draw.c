@@ -73,7 +73,7 @@ void gpu_draw(Gpu *gpu, const GpuDraw *draw) {
   set_inputs(gpu, &draw->in);
   glUseProgram(draw->program->id);
   glBindVertexArray(gpu->vertex_array);
-  glDrawArrays(GL_TRIANGLES, 0, draw->vertices > 0 ? draw->vertices : 3);
+  glDrawArrays(GL_TRIANGLES, draw->first_vertex, draw->vertices > 0 ? draw->vertices : 3);
 }
 
 void gpu_dispatch(Gpu *gpu, const GpuDispatch *dispatch) {

@@ -1,17 +1,27 @@
-// Obstacles from the frame to the GPU. Like particles, they may be absurd; those are left out.
+// Obstacles from the frame to the GPU and into the picture or the sun map. Like particles, they may be absurd; those are
+// left out. They are kept sorted by shape, and each shape has its own program.
 #include "render/picture.h"
 
 #include <float.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 
-// struct Body of obstacles.glsl, std430.
+// struct Body of body.glsl, std430.
 typedef struct Body {
-  float position[3], shape;   // m; SimShape
-  float half_size[3], unused; // m: of the box around the body, along its own axes
-  float rotation[4];          // unit quaternion x, y, z, w
-  float colour[4];            // linear; –
+  float position[3], unused;
+  float half_size[3]; // m, of the box around the body, along its own axes
+  float detail;       // stairs: number of steps; capsule: half the length of its straight part, m
+  float rotation[4];  // unit quaternion x, y, z, w
+  float colour[4];    // linear; –
 } Body;
+
+static const char *const shape_names[SIM_SHAPE_COUNT] = {"boxes",    "spheres", "cylinders",
+                                                         "capsules", "stairs",  "meshes"};
+
+#define MAX_STEPS 1000
+
+// ---- From the frame --------------------------------------------------------------------------------------------------
 
 static bool all_below(const float *values, int count, float limit) {
   for (int i = 0; i < count; ++i) {
@@ -20,37 +30,88 @@ static bool all_below(const float *values, int count, float limit) {
   return true;
 }
 
-static bool body_from_obstacle(Body *body, const SimObstacle *o) {
-  // clang-format off
-  const float half[3][3] = {
-    [SIM_BOX]      = { o->size[0] / 2, o->size[1] / 2, o->size[2] / 2 },
-    [SIM_SPHERE]   = { o->size[0] / 2, o->size[0] / 2, o->size[0] / 2 },
-    [SIM_CYLINDER] = { o->size[0] / 2, o->size[1] / 2, o->size[0] / 2 },
-  };
-  // clang-format on
+static float clamp01(float x) {
+  return x > 0 ? fminf(x, 1) : 0; // NaN becomes 0
+}
+
+// Place, axes and colour.
+static bool place_body(Body *body, const SimObstacle *o) {
   const float *q = o->rotation;
   const float length = sqrtf(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-  if ((unsigned)o->shape > SIM_CYLINDER || !(length > 1e-6f && length < 1e6f)) return false;
-  if (!all_below(o->position, 3, RENDER_FARTHEST) || !all_below(half[o->shape], 3, RENDER_FARTHEST)) return false;
-  *body = (Body){.shape = (float)o->shape};
+  if (!(length > 1e-6f && length < 1e6f) || !all_below(o->position, 3, RENDER_FARTHEST)) return false;
   for (int k = 0; k < 3; ++k) {
-    if (!(half[o->shape][k] > 0)) return false;
     body->position[k] = o->position[k];
-    body->half_size[k] = half[o->shape][k];
-    body->colour[k] = o->colour[k] > 0 ? fminf(o->colour[k], 1) : 0;
+    body->colour[k] = clamp01(o->colour[k]);
   }
   for (int k = 0; k < 4; ++k) body->rotation[k] = q[k] / length;
   return true;
 }
 
+// All but meshes.
+static bool size_body(Body *body, const SimObstacle *o) {
+  const float *s = o->size;
+  // A capsule that is shorter than wide is a ball.
+  if (o->shape == SIM_CAPSULE && !(s[1] > 0)) return false;
+  const float length = fmaxf(s[1], s[0]);
+  // clang-format off
+  const float full[][3] = {
+    [SIM_BOX]      = { s[0], s[1],   s[2] },
+    [SIM_SPHERE]   = { s[0], s[0],   s[0] },
+    [SIM_CYLINDER] = { s[0], s[1],   s[0] },
+    [SIM_CAPSULE]  = { s[0], length, s[0] },
+    [SIM_STAIRS]   = { s[0], s[1],   s[2] },
+  };
+  // clang-format on
+  for (int k = 0; k < 3; ++k) {
+    body->half_size[k] = full[o->shape][k] / 2;
+    if (!(body->half_size[k] > 0 && body->half_size[k] < RENDER_FARTHEST)) return false;
+  }
+  if (o->shape == SIM_CAPSULE) body->detail = body->half_size[1] - body->half_size[0];
+  if (o->shape == SIM_STAIRS) body->detail = (float)o->steps;
+  return o->shape != SIM_STAIRS || (o->steps >= 1 && o->steps <= MAX_STEPS);
+}
+
 // The box around a ball that holds the body however it is turned.
-static void add_to_bounds(RenderObstacles *obstacles, const Body *body) {
-  const float *half = body->half_size;
-  const float reach = sqrtf(half[0] * half[0] + half[1] * half[1] + half[2] * half[2]);
+static void add_to_bounds(RenderObstacles *obstacles, const Body *body, float reach) {
   for (int k = 0; k < 3; ++k) {
     obstacles->bounds_min[k] = fminf(obstacles->bounds_min[k], body->position[k] - reach);
     obstacles->bounds_max[k] = fmaxf(obstacles->bounds_max[k], body->position[k] + reach);
   }
+}
+
+// Add the obstacle to `bodies` if it can be drawn. false: GL or the machine is out of memory.
+static bool add_body(RenderObstacles *obstacles, Body *bodies, const SimObstacle *o, RenderError *error) {
+  Body *body = &bodies[obstacles->count];
+  *body = (Body){0};
+  if (!place_body(body, o)) return true;
+  float reach;
+  if (o->shape == SIM_MESH) {
+    int32_t mesh;
+    if (!render_meshes_take(&obstacles->meshes, o->mesh, &mesh, error)) return false;
+    if (mesh < 0) return true;
+    obstacles->mesh_of_body[obstacles->count - obstacles->first[SIM_MESH]] = mesh;
+    reach = obstacles->meshes.meshes[mesh].reach;
+  } else {
+    if (!size_body(body, o)) return true;
+    const float *half = body->half_size;
+    reach = sqrtf(half[0] * half[0] + half[1] * half[1] + half[2] * half[2]);
+  }
+  add_to_bounds(obstacles, body, reach);
+  ++obstacles->count;
+  return true;
+}
+
+static bool add_bodies(RenderObstacles *obstacles, Body *bodies, const SimFrame *frame, RenderError *error) {
+  render_meshes_forget(&obstacles->meshes);
+  for (int shape = 0; shape < SIM_SHAPE_COUNT; ++shape) {
+    obstacles->first[shape] = obstacles->count;
+    for (int32_t i = 0; i < frame->obstacle_count; ++i) {
+      const SimObstacle *o = &frame->obstacles[i];
+      if ((int)o->shape == shape && !add_body(obstacles, bodies, o, error)) return false;
+    }
+  }
+  obstacles->first[SIM_SHAPE_COUNT] = obstacles->count;
+  return true;
 }
 
 bool render_obstacles_upload(RenderPicture *picture, RenderError *error) {
@@ -61,17 +122,75 @@ bool render_obstacles_upload(RenderPicture *picture, RenderError *error) {
     obstacles->bounds_min[k] = FLT_MAX;
     obstacles->bounds_max[k] = -FLT_MAX;
   }
-  if (frame->obstacle_count <= 0 || frame->obstacles == NULL) return true;
-  Body *bodies = malloc(sizeof *bodies * (size_t)frame->obstacle_count);
-  if (bodies == NULL) return gpu_fail(error, "out of memory for %d obstacles", frame->obstacle_count);
-  for (int32_t i = 0; i < frame->obstacle_count; ++i) {
-    Body *body = &bodies[obstacles->count];
-    if (!body_from_obstacle(body, &frame->obstacles[i])) continue;
-    add_to_bounds(obstacles, body);
-    ++obstacles->count;
+  if (frame->obstacle_count <= 0 || frame->obstacles == NULL) {
+    render_meshes_forget(&obstacles->meshes);
+    return true;
   }
-  const size_t size = sizeof *bodies * (size_t)obstacles->count;
-  const bool written = gpu_buffer_write(&obstacles->bodies, "obstacles", bodies, size, error);
+  const size_t most = (size_t)frame->obstacle_count;
+  Body *bodies = malloc(sizeof *bodies * most);
+  free(obstacles->mesh_of_body);
+  obstacles->mesh_of_body = malloc(sizeof *obstacles->mesh_of_body * most);
+  bool ok = bodies != NULL && obstacles->mesh_of_body != NULL;
+  if (!ok) gpu_fail(error, "out of memory for %d obstacles", frame->obstacle_count);
+  ok = ok && add_bodies(obstacles, bodies, frame, error) &&
+       gpu_buffer_write(&obstacles->bodies, "obstacles", bodies, sizeof *bodies * (size_t)obstacles->count, error);
   free(bodies);
-  return written;
+  return ok;
+}
+
+void render_obstacles_destroy(RenderObstacles *obstacles) {
+  for (int shape = 0; shape < SIM_SHAPE_COUNT; ++shape) {
+    gpu_program_destroy(&obstacles->program[0][shape]);
+    gpu_program_destroy(&obstacles->program[1][shape]);
+  }
+  gpu_buffer_destroy(&obstacles->bodies);
+  render_meshes_destroy(&obstacles->meshes);
+  free(obstacles->mesh_of_body);
+  *obstacles = (RenderObstacles){0};
+}
+
+// ---- Drawing ---------------------------------------------------------------------------------------------------------
+
+static bool prepare(RenderPicture *picture, bool from_sun, int shape, RenderError *error) {
+  char label[64], defines[sizeof picture->defines + 64];
+  snprintf(label, sizeof label, "%s%s", shape_names[shape], from_sun ? " from the sun" : "");
+  snprintf(defines, sizeof defines, "%s#define SHAPE %d\n", from_sun ? "#define SUN 1\n" : picture->defines, shape);
+  const GpuProgramDesc desc = {
+      .label = label, .file = shape == SIM_MESH ? "meshes.glsl" : "obstacles.glsl", .defines = defines};
+  return gpu_program_prepare(&picture->obstacles.program[from_sun][shape], &desc, error);
+}
+
+// The closed mesh seen from within is not there, like every other body.
+static void draw_meshes(RenderPicture *picture, bool from_sun, GpuDraw draw) {
+  const RenderObstacles *obstacles = &picture->obstacles;
+  draw.cull = from_sun ? GPU_CULL_NONE : GPU_CULL_BACK;
+  for (int32_t body = obstacles->first[SIM_MESH]; body < obstacles->count; ++body) {
+    const RenderMesh *mesh = &obstacles->meshes.meshes[obstacles->mesh_of_body[body - obstacles->first[SIM_MESH]]];
+    const int32_t which[4] = {body};
+    draw.vertices = mesh->corner_count;
+    draw.in.storage[1] = &mesh->corners;
+    draw.in.params = which;
+    draw.in.params_size = sizeof which;
+    gpu_draw(picture->gpu, &draw);
+  }
+}
+
+bool render_obstacles_draw(RenderPicture *picture, bool from_sun, GpuDraw draw, RenderError *error) {
+  const RenderObstacles *obstacles = &picture->obstacles;
+  draw.in.storage[0] = &obstacles->bodies;
+  for (int shape = 0; shape < SIM_SHAPE_COUNT && obstacles->count > 0; ++shape) {
+    const int32_t first = obstacles->first[shape], count = obstacles->first[shape + 1] - first;
+    if (count == 0) continue;
+    if (!prepare(picture, from_sun, shape, error)) return false;
+    draw.program = &obstacles->program[from_sun][shape];
+    if (shape == SIM_MESH) {
+      draw_meshes(picture, from_sun, draw);
+      continue;
+    }
+    draw.first_vertex = 36 * first;
+    draw.vertices = 36 * count;
+    draw.cull = from_sun ? GPU_CULL_NONE : GPU_CULL_FRONT; // the far sides of the box are in view also from within it
+    gpu_draw(picture->gpu, &draw);
+  }
+  return true;
 }

@@ -56,16 +56,40 @@ typedef struct RenderTiles {
 bool render_tiles_mark(RenderPicture *picture, float scale, RenderError *error);
 void render_tiles_destroy(RenderTiles *tiles);
 
-/// Solid bodies on the GPU, see obstacles.glsl.
-typedef struct RenderObstacles {
-  GpuBuffer bodies; // (count) struct Body
+/// A triangle mesh on the GPU.
+typedef struct RenderMesh {
+  int32_t vertex_count, triangle_count;
+  unsigned char *content; // its vertices and triangles as they came, by which it is known again
+  GpuBuffer corners;      // (corner_count, 6) float: position (m), unit normal; three corners for each triangle
+  int32_t corner_count;   // 0 when nothing of it can be drawn
+  float reach;            // m, of the farthest corner from the origin
+  bool shown;             // in the picture at hand
+} RenderMesh;
+
+typedef struct RenderMeshes {
+  RenderMesh *meshes; // (count)
   int32_t count;
+} RenderMeshes;
+/// Output: the index of the mesh with this content, made when there is none; −1 when no triangle can be drawn.
+bool render_meshes_take(RenderMeshes *meshes, const SimMesh *mesh, int32_t *index, RenderError *error);
+/// Drop those that have not been taken since the last call. Indices change.
+void render_meshes_forget(RenderMeshes *meshes);
+void render_meshes_destroy(RenderMeshes *meshes);
+
+/// Solid bodies on the GPU, sorted by shape.
+typedef struct RenderObstacles {
+  GpuProgram program[2][SIM_SHAPE_COUNT]; // from the eye, from the sun
+  GpuBuffer bodies;                       // (count) struct Body of body.glsl
+  int32_t count;
+  int32_t first[SIM_SHAPE_COUNT + 1]; // the bodies of a shape: first[shape] … first[shape + 1] − 1
+  int32_t *mesh_of_body;              // indices of meshes, from body first[SIM_MESH] on
+  RenderMeshes meshes;
   float bounds_min[3], bounds_max[3]; // m; min > max when there are none
 } RenderObstacles;
 
 /// The scene as the sun sees it, from infinitely far away. Heights are metres towards the sun.
 typedef struct RenderSunMap {
-  GpuProgram splat_program, blur_program[2], relief_program, solid_program;
+  GpuProgram splat_program, blur_program[2], relief_program;
   GpuTexture raw;                   // of the spheres: thickness (m), –, –, height
   GpuTexture half_blurred, blurred; // thickness, height, coverage, –
   GpuTexture water;                 // thickness, height, coverage, focus of the light on what lies below
@@ -76,7 +100,7 @@ typedef struct RenderSunMap {
 
 /// Sky, floor, obstacles and the back edges of the container.
 typedef struct RenderBackground {
-  GpuProgram sky_program, floor_program, obstacle_program;
+  GpuProgram sky_program, floor_program;
   GpuProgram edge_program[2]; // back, front
   GpuProgram pane_program;
   GpuTexture colour; // rgb: linear light; a: depth along the view axis (m), 0 for the sky
@@ -113,6 +137,9 @@ struct RenderPicture {
 bool render_frame_block_write(RenderPicture *picture, const RenderView *view, RenderError *error);
 
 bool render_obstacles_upload(RenderPicture *picture, RenderError *error);
+void render_obstacles_destroy(RenderObstacles *obstacles);
+/// Draw all bodies; `draw` has target, depth, blend and the inputs beyond the bodies.
+bool render_obstacles_draw(RenderPicture *picture, bool from_sun, GpuDraw draw, RenderError *error);
 
 bool render_sun_map_create(RenderPicture *picture, RenderError *error);
 void render_sun_map_destroy(RenderPicture *picture);

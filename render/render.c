@@ -84,7 +84,7 @@ void render_destroy(Render *render) {
   render_sun_map_destroy(picture);
   render_particles_destroy(&picture->particles);
   render_tiles_destroy(&picture->tiles);
-  gpu_buffer_destroy(&picture->obstacles.bodies);
+  render_obstacles_destroy(&picture->obstacles);
   gpu_buffer_destroy(&picture->uniforms);
   gpu_target_destroy(&picture->target);
   gpu_texture_destroy(&picture->colour);

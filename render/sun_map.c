@@ -32,7 +32,6 @@ void render_sun_map_destroy(RenderPicture *picture) {
   gpu_program_destroy(&map->blur_program[0]);
   gpu_program_destroy(&map->blur_program[1]);
   gpu_program_destroy(&map->relief_program);
-  gpu_program_destroy(&map->solid_program);
   gpu_texture_destroy(&map->raw);
   gpu_texture_destroy(&map->half_blurred);
   gpu_texture_destroy(&map->blurred);
@@ -86,20 +85,11 @@ static void smooth(RenderPicture *picture) {
 // ---- Obstacles -------------------------------------------------------------------------------------------------------
 
 static bool draw_solids(RenderPicture *picture, RenderError *error) {
-  RenderSunMap *map = &picture->sun_map;
-  const GpuProgramDesc desc = {
-      .label = "obstacles from the sun", .file = "obstacles.glsl", .defines = "#define SUN 1\n"};
-  if (!gpu_program_prepare(&map->solid_program, &desc, error)) return false;
+  const GpuTarget *out = &picture->sun_map.solid_target;
   const float nothing[4] = {-1e9f, 0, 0, 0};
-  gpu_clear_colour(&map->solid_target, 0, nothing);
-  gpu_draw(picture->gpu, &(GpuDraw){
-                             .program = &map->solid_program,
-                             .target = &map->solid_target,
-                             .vertices = 36 * picture->obstacles.count,
-                             .blend = GPU_BLEND_MAX,
-                             .in = {.storage = {&picture->obstacles.bodies}, .frame = &picture->uniforms},
-                         });
-  return true;
+  gpu_clear_colour(out, 0, nothing);
+  const GpuDraw draw = {.target = out, .blend = GPU_BLEND_MAX, .in.frame = &picture->uniforms};
+  return render_obstacles_draw(picture, true, draw, error);
 }
 
 bool render_sun_map_draw(RenderPicture *picture, RenderError *error) {

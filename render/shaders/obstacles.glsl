@@ -1,18 +1,7 @@
-// Boxes, spheres and cylinders by ray casting: the box around each is drawn, and every pixel's ray is met with the
-// shape inside. SUN: heights as seen from the sun.
+// Bodies of one SHAPE by ray casting: the box around each is drawn, and every pixel's ray is met with the shape inside.
+// SUN: heights as seen from the sun. A program for each shape: a software rasteriser runs both sides of a branch.
 #include "frame.glsl"
-
-struct Body {
-  vec4 position;        // m; shape: 0 box, 1 sphere, 2 cylinder along y
-  vec4 half_size;       // m, along its own axes
-  vec4 rotation;        // quaternion
-  vec4 colour;
-};
-layout(std430, binding = 0) readonly buffer Bodies { Body bodies[]; };
-
-vec3 rotate(vec4 q, vec3 v) {
-  return v + 2.0 * cross(q.xyz, cross(q.xyz, v) + q.w * v);
-}
+#include "body.glsl"
 
 #ifdef VERTEX_STAGE
 flat out int index;
@@ -41,50 +30,13 @@ void main() {
 #endif
 
 #ifdef FRAGMENT_STAGE
+#include "solids.glsl"
 flat in int index;
 
-// The two planes at ±size across one axis: entry and exit of the ray from o along d.
-vec2 slab(float o, float d, float size) {
-  float a = (-size - o) / d, b = (size - o) / d;
-  if (d == 0.0) return abs(o) < size ? vec2(-FAR, FAR) : vec2(FAR, -FAR);
-  return vec2(min(a, b), max(a, b));
-}
-
-// A circle or sphere of radius r around the origin; the foot of the perpendicular keeps it precise.
-vec2 ball(vec3 o, vec3 d, float r) {
-  float dd = dot(d, d);
-  if (dd == 0.0) return dot(o, o) < r * r ? vec2(-FAR, FAR) : vec2(FAR, -FAR);
-  float middle = -dot(o, d) / dd;
-  vec3 foot = o + d * middle;
-  float h2 = (r * r - dot(foot, foot)) / dd;
-  return h2 > 0.0 ? vec2(middle - sqrt(h2), middle + sqrt(h2)) : vec2(FAR, -FAR);
-}
-
-// Entry and exit of a ray in the body's own axes, and the outward normal at the entry.
-vec2 meet(Body body, vec3 o, vec3 d, out vec3 normal) {
-  vec3 size = body.half_size.xyz;
-  vec2 y = slab(o.y, d.y, size.y);
-  if (body.position.w == 1.0) {
-    vec2 t = ball(o, d, size.x);
-    normal = (o + d * t.x) / size.x;
-    return t;
-  }
-  if (body.position.w == 2.0) {
-    vec2 t = ball(vec3(o.x, 0.0, o.z), vec3(d.x, 0.0, d.z), size.x);
-    vec3 p = o + d * t.x;
-    normal = y.x > t.x ? vec3(0.0, -sign(d.y), 0.0) : vec3(p.x, 0.0, p.z) / size.x;
-    return vec2(max(t.x, y.x), min(t.y, y.y));
-  }
-  vec2 x = slab(o.x, d.x, size.x), z = slab(o.z, d.z, size.z);
-  float enter = max(x.x, max(y.x, z.x));
-  normal = enter == x.x ? vec3(-sign(d.x), 0, 0) : enter == y.x ? vec3(0, -sign(d.y), 0) : vec3(0, 0, -sign(d.z));
-  return vec2(enter, min(x.y, min(y.y, z.y)));
-}
-
-vec2 meet_world(vec3 origin, vec3 ray, out vec3 normal) {
+vec2 meet_world(vec3 origin, vec3 ray, float from, out vec3 normal) {
   Body body = bodies[index];
   vec4 back = vec4(-body.rotation.xyz, body.rotation.w);
-  vec2 t = meet(body, rotate(back, origin - body.position.xyz), rotate(back, ray), normal);
+  vec2 t = meet(body, rotate(back, origin - body.position.xyz), rotate(back, ray), from, normal);
   normal = rotate(body.rotation, normal);
   return t;
 }
@@ -96,24 +48,19 @@ noperspective in vec3 start;
 
 void main() {
   vec3 normal;
-  vec2 t = meet_world(start, -sun_direction.xyz, normal);
+  vec2 t = meet_world(start, -sun_direction.xyz, -FAR, normal);
   if (t.x > t.y) discard;
   result = vec4(-t.x);
 }
 #else
-#include "sky.glsl"
-#include "sun.glsl"
+#include "solid_light.glsl"
 
 void main() {
   vec3 ray = to_world(view_ray(gl_FragCoord.xy / lens.zw * 2.0 - 1.0));
   vec3 normal;
-  vec2 t = meet_world(eye.xyz, ray, normal);
+  vec2 t = meet_world(eye.xyz, ray, eye.w, normal);
   if (t.x > t.y || t.x < eye.w) discard; // missed, or the eye is inside
-  vec3 p = eye.xyz + ray * t.x;
-  float facing = max(dot(normal, sun_direction.xyz), 0.0);
-  SunLight sunlit = sun_light(p);
-  vec3 light = sun_colour.rgb * facing / PI * sunlit.direct * sunlit.focus + sky_average(normal) * sunlit.diffuse;
-  result = vec4(bodies[index].colour.rgb * light, t.x);
+  result = vec4(bodies[index].colour.rgb * solid_light(eye.xyz + ray * t.x, normal), t.x);
   gl_FragDepth = depth_of(t.x);
 }
 #endif

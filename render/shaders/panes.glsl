@@ -1,12 +1,26 @@
-// The walls of the container that face the eye: glass, of which nothing is seen but a faint image of the sky.
+// The walls of the container that face the eye: glass, of which nothing is seen but a faint image of the sky and, on a
+// round wall, upright gleams of the sun.
 #include "frame.glsl"
 
 #ifdef VERTEX_STAGE
-out vec3 at;            // on the wall, m
-flat out vec3 normal;   // outward
+out vec3 at;       // on the wall, m
+out vec3 normal;   // outward
 
 const vec2 CORNERS[6] = vec2[6](vec2(0, 0), vec2(1, 0), vec2(1, 1), vec2(0, 0), vec2(1, 1), vec2(0, 1));
 
+#ifdef GLASS
+#include "glass.glsl"
+const int PIECES = 96;
+
+void main() {
+  Glass glass = glass_of_container();
+  vec2 corner = CORNERS[gl_VertexID % 6];
+  float angle = mix(glass.front.x, glass.front.y, (float(gl_VertexID / 6) + corner.x) / float(PIECES));
+  at = on_wall(glass, angle, mix(container_min.y, container_max.y, corner.y));
+  normal = vec3(cos(angle), 0.0, sin(angle));
+  gl_Position = project(to_view(at));
+}
+#else
 void main() {
   int wall = gl_VertexID / 6;
   vec2 corner = CORNERS[gl_VertexID % 6];
@@ -20,18 +34,33 @@ void main() {
   gl_Position = faces_eye ? project(to_view(at)) : vec4(2.0, 2.0, 0.0, 1.0);
 }
 #endif
+#endif
 
 #ifdef FRAGMENT_STAGE
 #include "sky.glsl"
 in vec3 at;
-flat in vec3 normal;
+in vec3 normal;
 layout(location = 0) out vec4 result; // premultiplied
 
 void main() {
-  vec3 v = normalize(eye.xyz - at);
+  vec3 v = normalize(eye.xyz - at), n = normalize(normal);
   // Two surfaces of glass, n = 1.5.
-  float facing = clamp(dot(v, normal), 0.0, 1.0);
+  float facing = clamp(dot(v, n), 0.0, 1.0);
   float mirror = 0.025 + 0.4 * pow(1.0 - facing, 5.0);
-  result = vec4(sky(reflect(-v, normal)) * mirror, mirror);
+  vec3 light = sky(reflect(-v, n)) * mirror;
+#ifdef GLASS
+  // Near its outlines light comes a longer way through the wall, which is then sea green.
+  float tint = 1.0 - exp(-0.035 / max(facing, 0.04));
+  light += vec3(0.16, 0.34, 0.33) * tint;
+  mirror += tint;
+  // An upright wall mirrors the sun downwards, past an eye above; what gleams is the roundness of its two surfaces, all
+  // along the line where, seen from above, it would mirror the sun. Of each surface a streak, fading towards the foot.
+  vec2 half_way = normalize(normalize(v.xz) + normalize(sun_direction.xz + vec2(1e-6, 0.0)));
+  float aside = half_way.x * n.z - half_way.y * n.x; // sine of the angle from that line
+  float height = clamp((at.y - container_min.y) / (container_max.y - container_min.y), 0.0, 1.0);
+  float streak = exp(-aside * aside * 9000.0) + 0.35 * exp(-(aside - 0.09) * (aside - 0.09) * 2500.0);
+  light += sun_colour.rgb * 0.11 * streak * smoothstep(0.0, 0.35, height) * smoothstep(1.0, 0.93, height);
+#endif
+  result = vec4(light, mirror);
 }
 #endif

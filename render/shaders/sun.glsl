@@ -37,6 +37,17 @@ float sun_past_solids(vec3 p) {
 #endif
 }
 
+// A little off the surface of a solid: there the filter's 4·4 texels, which reach 2.8 texels from the middle, see past the
+// solid's own slope, however the sun grazes it.
+vec3 clear_of_solid(vec3 p, vec3 normal) {
+#ifdef SOLID_SHADOW
+  float texel = max(sun_map.x, sun_map.y) / float(textureSize(sun_solid, 0).x);
+  return p + normal * (2.8 * texel * length(cross(normal, sun_direction.xyz)));
+#else
+  return p;
+#endif
+}
+
 struct SunLight {
   vec3 direct;          // share of the sunlight that reaches the point, without focus
   float focus;          // bundling of that light by the water's bumps
@@ -46,7 +57,8 @@ struct SunLight {
 };
 
 // Light at a point in, below or beside the water. Besides absorbing, water scatters: its shadow is darker than its tint.
-SunLight sun_light(vec3 p) {
+// Shadows of solids are looked up at `past_solids`.
+SunLight sun_light(vec3 p, vec3 past_solids) {
   SunLight light = SunLight(vec3(1.0), 1.0, vec3(1.0), 0.0, -FAR);
 #ifdef WATER_SHADOW
   vec4 water = textureLod(sun_water, sun_place(p), 0.0);
@@ -58,6 +70,10 @@ SunLight sun_light(vec3 p) {
     light.diffuse = exp(-absorption.rgb * 0.7 * light.path);
   }
 #endif
-  light.direct *= sun_past_solids(p);
+  light.direct *= sun_past_solids(past_solids);
   return light;
+}
+
+SunLight sun_light(vec3 p) {
+  return sun_light(p, p);
 }

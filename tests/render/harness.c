@@ -77,23 +77,59 @@ static void normalize(double v[3]) {
   for (int k = 0; k < 3; ++k) v[k] /= length;
 }
 
-Ray harness_ray(const RenderView *view, int32_t width, int32_t height, int32_t x, int32_t y) {
-  double gaze[3], right[3], up[3];
+typedef struct Camera {
+  double gaze[3], right[3], up[3], tan_x, tan_y;
+} Camera;
+
+static Camera camera_of(const RenderView *view, int32_t width, int32_t height) {
+  Camera camera;
   const double y_axis[3] = {0, 1, 0};
-  for (int k = 0; k < 3; ++k) gaze[k] = (double)view->target[k] - (double)view->eye[k];
-  normalize(gaze);
-  cross(right, gaze, y_axis);
-  normalize(right);
-  cross(up, right, gaze);
-  const double tan_y = tan((double)view->vertical_fov * 3.14159265358979323846 / 360);
-  const double tan_x = tan_y * width / height;
-  const double px = tan_x * (2 * (x + 0.5) / width - 1), py = tan_y * (1 - 2 * (y + 0.5) / height);
+  for (int k = 0; k < 3; ++k) camera.gaze[k] = (double)view->target[k] - (double)view->eye[k];
+  normalize(camera.gaze);
+  cross(camera.right, camera.gaze, y_axis);
+  normalize(camera.right);
+  cross(camera.up, camera.right, camera.gaze);
+  camera.tan_y = tan((double)view->vertical_fov * 3.14159265358979323846 / 360);
+  camera.tan_x = camera.tan_y * width / height;
+  return camera;
+}
+
+Ray harness_ray(const RenderView *view, int32_t width, int32_t height, int32_t x, int32_t y) {
+  const Camera camera = camera_of(view, width, height);
+  const double px = camera.tan_x * (2 * (x + 0.5) / width - 1), py = camera.tan_y * (1 - 2 * (y + 0.5) / height);
   Ray ray;
   for (int k = 0; k < 3; ++k) {
     ray.origin[k] = (double)view->eye[k];
-    ray.direction[k] = gaze[k] + px * right[k] + py * up[k];
+    ray.direction[k] = camera.gaze[k] + px * camera.right[k] + py * camera.up[k];
   }
   return ray;
+}
+
+double harness_project(const RenderView *view, int32_t width, int32_t height, const double point[3], double pixel[2]) {
+  const Camera camera = camera_of(view, width, height);
+  double p[3];
+  for (int k = 0; k < 3; ++k) p[k] = point[k] - (double)view->eye[k];
+  const double depth = dot(p, camera.gaze);
+  pixel[0] = (dot(p, camera.right) / depth / camera.tan_x + 1) / 2 * width;
+  pixel[1] = (1 - dot(p, camera.up) / depth / camera.tan_y) / 2 * height;
+  return depth;
+}
+
+// v' = R(x, y, z, w) v
+static void rotate(double v[3], double x, double y, double z, double w) {
+  const double cx = y * v[2] - z * v[1] + w * v[0], cy = z * v[0] - x * v[2] + w * v[1],
+               cz = x * v[1] - y * v[0] + w * v[2];
+  v[0] += 2 * (y * cz - z * cy);
+  v[1] += 2 * (z * cx - x * cz);
+  v[2] += 2 * (x * cy - y * cx);
+}
+
+void harness_to_body(double v[3], const float rotation[4]) {
+  rotate(v, -(double)rotation[0], -(double)rotation[1], -(double)rotation[2], (double)rotation[3]);
+}
+
+void harness_from_body(double v[3], const float rotation[4]) {
+  rotate(v, (double)rotation[0], (double)rotation[1], (double)rotation[2], (double)rotation[3]);
 }
 
 bool harness_ray_sphere(const Ray *ray, const float centre[3], double radius, double t[2], double *margin) {

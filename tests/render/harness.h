@@ -40,6 +40,13 @@ typedef struct Ray {
 } Ray;
 Ray harness_ray(const RenderView *view, int32_t width, int32_t height, int32_t x, int32_t y);
 
+/// Where a point is in the picture, pixels from the top left corner; returns its depth, negative behind the eye.
+double harness_project(const RenderView *view, int32_t width, int32_t height, const double point[3], double pixel[2]);
+
+/// Turn a vector from the world's axes into those of a body with this rotation, and back.
+void harness_to_body(double v[3], const float rotation[4]);
+void harness_from_body(double v[3], const float rotation[4]);
+
 /// Depths of entry and exit of a ray and a sphere; false when it misses. *margin: how far inside the silhouette the ray
 /// passes, in radii (negative outside).
 bool harness_ray_sphere(const Ray *ray, const float centre[3], double radius, double t[2], double *margin);

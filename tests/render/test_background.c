@@ -116,16 +116,6 @@ static void test_tone_none_clamps_and_scales(void **state) {
 
 // ---- Obstacles -------------------------------------------------------------------------------------------------------
 
-static void rotate_back(double v[3], const float q[4]) {
-  // v' = R(q)ᵀ v
-  const double x = -(double)q[0], y = -(double)q[1], z = -(double)q[2], w = (double)q[3];
-  const double cx = y * v[2] - z * v[1] + w * v[0], cy = z * v[0] - x * v[2] + w * v[1],
-               cz = x * v[1] - y * v[0] + w * v[2];
-  v[0] += 2 * (y * cz - z * cy);
-  v[1] += 2 * (z * cx - x * cz);
-  v[2] += 2 * (x * cy - y * cx);
-}
-
 // Is the point inside the body? The slow truth below needs nothing else.
 static double outside_distance(const SimObstacle *o, const double local[3]) {
   const double r = (double)o->size[0] / 2;
@@ -148,7 +138,7 @@ static double marched_depth(const SimObstacle *o, const Ray *ray, double *grazin
   for (double t = 0.5; t < 6; t += step) {
     double local[3];
     for (int k = 0; k < 3; ++k) local[k] = ray->origin[k] + t * ray->direction[k] - (double)o->position[k];
-    rotate_back(local, o->rotation);
+    harness_to_body(local, o->rotation);
     const double d = outside_distance(o, local);
     if (d < best) best = d;
     if (d < 0 && hit == 0) {
@@ -156,7 +146,7 @@ static double marched_depth(const SimObstacle *o, const Ray *ray, double *grazin
       for (int i = 0; i < 40; ++i) {
         const double middle = (low + high) / 2;
         for (int k = 0; k < 3; ++k) local[k] = ray->origin[k] + middle * ray->direction[k] - (double)o->position[k];
-        rotate_back(local, o->rotation);
+        harness_to_body(local, o->rotation);
         if (outside_distance(o, local) < 0) {
           high = middle;
         } else {

@@ -8,12 +8,16 @@
 #define WIDTH 480
 #define HEIGHT 270
 
-static uint8_t *picture_under(ContextKind kind) {
+// A body of every shape, in a tank or in a round glass.
+static uint8_t *picture_under(ContextKind kind, SimContainerShape container) {
   Harness harness = harness_open(kind, WIDTH, HEIGHT);
-  TestFrame *t = test_frame_pool();
-  t->frame.obstacle_count = 2;
-  t->obstacles[0] = (SimObstacle){SIM_SPHERE, {0.4f, 0, 0}, {1.2f, 0.35f, 0.5f}, {0, 0, 0, 1}, {0.8f, 0.7f, 0.3f}};
-  t->obstacles[1] = (SimObstacle){SIM_CYLINDER, {0.2f, 1, 0}, {2.3f, 0.5f, 0.4f}, {0, 0, 0, 1}, {0.7f, 0.7f, 0.7f}};
+  TestFrame *t = test_frame_shapes();
+  const SimObstacle more[] = {
+      {SIM_SPHERE, {0.4f, 0, 0}, {1.2f, 0.35f, 0.5f}, {0, 0, 0, 1}, {0.8f, 0.7f, 0.3f}, 0, NULL},
+      {SIM_CYLINDER, {0.2f, 1, 0}, {1.9f, 0.5f, 0.2f}, {0, 0, 0, 1}, {0.7f, 0.7f, 0.7f}, 0, NULL},
+      {SIM_BOX, {0.2f, 0.7f, 0.2f}, {0.3f, 0.5f, 0.8f}, {0, 0, 0, 1}, {0.7f, 0.4f, 0.7f}, 0, NULL}};
+  for (int i = 0; i < 3; ++i) t->obstacles[t->frame.obstacle_count++] = more[i];
+  t->frame.container.shape = container;
   const RenderView view = harness_view(0.35f, 1.2f, 4.1f, 1.5f, 0.55f, 0.4f, 38);
   const RenderSettings settings = render_default_settings();
   uint8_t *rgb = harness_draw(&harness, &t->frame, &view, &settings);
@@ -33,17 +37,21 @@ static void test_egl_and_osmesa_agree(void **state) {
       skip();
     }
   }
-  uint8_t *egl = picture_under(CONTEXT_EGL), *osmesa = picture_under(CONTEXT_OSMESA);
-  int different = 0;
-  for (int i = 0; i < WIDTH * HEIGHT; ++i) {
-    bool same = true;
-    for (int k = 0; k < 3; ++k) same = same && abs(egl[3 * i + k] - osmesa[3 * i + k]) <= 2;
-    different += !same;
+  for (int shape = SIM_CONTAINER_BOX; shape <= SIM_CONTAINER_GLASS; ++shape) {
+    uint8_t *egl = picture_under(CONTEXT_EGL, (SimContainerShape)shape);
+    uint8_t *osmesa = picture_under(CONTEXT_OSMESA, (SimContainerShape)shape);
+    int different = 0;
+    for (int i = 0; i < WIDTH * HEIGHT; ++i) {
+      bool same = true;
+      for (int k = 0; k < 3; ++k) same = same && abs(egl[3 * i + k] - osmesa[3 * i + k]) <= 2;
+      different += !same;
+    }
+    if (different * 200 > WIDTH * HEIGHT) {
+      fail_msg("%d of %d pixels differ by more than 2/255", different, WIDTH * HEIGHT);
+    }
+    free(egl);
+    free(osmesa);
   }
-  if (different * 200 > WIDTH * HEIGHT)
-    fail_msg("%d of %d pixels differ by more than 2/255", different, WIDTH * HEIGHT);
-  free(egl);
-  free(osmesa);
 }
 
 // One after the other, in any order: the pointers that OSMesa needs are put back.

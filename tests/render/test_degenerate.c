@@ -44,6 +44,13 @@ static int black_pixels(const uint8_t *rgb) {
   return black;
 }
 
+static void expect_refusal(Harness *harness, const SimFrame *frame, const RenderView *view,
+                           const RenderSettings *settings, const char *mention) {
+  RenderError error = {0};
+  assert_false(render_draw(harness->render, frame, view, settings, &error));
+  if (strstr(error.message, mention) == NULL) fail_msg("\"%s\" does not mention \"%s\"", error.message, mention);
+}
+
 static void test_empty_frame_is_the_background(void **state) {
   (void)state;
   Harness harness = harness_open(CONTEXT_AUTO, WIDTH, HEIGHT);
@@ -191,6 +198,13 @@ static void test_absurd_containers_and_obstacles(void **state) {
       {SIM_CYLINDER, {0, 0, 0}, {1, 1, 1}, {0, 0, 0, 1}, {1, 1, 1}},
       {SIM_BOX, {1, 1, 1}, {1, 1, 1}, {0, 0, 0, 0}, {1, 1, 1}},
       {SIM_BOX, {1, 1, 1}, {1, 1, 1}, {NAN, 0, 0, 1}, {1, 1, 1}},
+      {SIM_CAPSULE, {0, 1, 0}, {1, 1, 1}, {0, 0, 0, 1}, {1, 1, 1}},
+      {SIM_CAPSULE, {1, NAN, 0}, {1, 1, 1}, {0, 0, 0, 1}, {1, 1, 1}, 0, NULL},
+      {SIM_STAIRS, {1, 1, 1}, {1, 1, 1}, {0, 0, 0, 1}, {1, 1, 1}, 0, NULL},
+      {SIM_STAIRS, {1, 1, 1}, {1, 1, 1}, {0, 0, 0, 1}, {1, 1, 1}, 1001, NULL},
+      {SIM_STAIRS, {1, 1, 1}, {1, 1, 1}, {0, 0, 0, 1}, {1, 1, 1}, -5, NULL},
+      {SIM_STAIRS, {1, 0, 1}, {1, 1, 1}, {0, 0, 0, 1}, {1, 1, 1}, 5, NULL},
+      {(SimShape)-1, {1, 1, 1}, {1, 1, 1}, {0, 0, 0, 1}, {1, 1, 1}},
       {(SimShape)77, {1, 1, 1}, {1, 1, 1}, {0, 0, 0, 1}, {1, 1, 1}},
   };
   uint8_t *without = draw_default(&harness, t, &front);
@@ -201,21 +215,136 @@ static void test_absurd_containers_and_obstacles(void **state) {
   free(without);
   free(with);
   // The eye inside a body: it is not there.
-  const SimObstacle around = {SIM_SPHERE, {2, 0, 0}, {1.5f, 1, 4}, {0, 0, 0, 1}, {0, 0, 0}};
+  SimMesh *ring = test_mesh_torus(1, 0.5f, 24, 12);
+  const SimObstacle around[] = {
+      {SIM_SPHERE, {2, 0, 0}, {1.5f, 1, 4}, {0, 0, 0, 1}, {0, 0, 0}, 0, NULL},
+      {SIM_CAPSULE, {2, 5, 0}, {1.5f, 1, 4}, {0, 0, 0, 1}, {0, 0, 0}, 0, NULL},
+      {SIM_STAIRS, {2, 1, 2}, {1.5f, 1.3f, 4}, {0, 0, 0, 1}, {0, 0, 0}, 4, NULL},
+      {SIM_MESH, {0}, {1.5f, 1, 5}, {0, 0, 0, 1}, {0, 0, 0}, 0, ring},
+  };
   t->frame.obstacle_count = 1;
-  t->frame.obstacles = &around;
-  uint8_t *inside = draw_default(&harness, t, &front);
-  assert_int_equal(black_pixels(inside), 0);
-  free(inside);
+  for (size_t i = 0; i < sizeof around / sizeof around[0]; ++i) {
+    t->frame.obstacles = &around[i];
+    uint8_t *inside = draw_default(&harness, t, &front);
+    if (black_pixels(inside) > 0) fail_msg("body %zu is seen from within", i);
+    free(inside);
+  }
+  test_mesh_destroy(ring);
   test_frame_destroy(t);
   harness_close(&harness);
 }
 
-static void expect_refusal(Harness *harness, const SimFrame *frame, const RenderView *view,
-                           const RenderSettings *settings, const char *mention) {
-  RenderError error = {0};
-  assert_false(render_draw(harness->render, frame, view, settings, &error));
-  if (strstr(error.message, mention) == NULL) fail_msg("\"%s\" does not mention \"%s\"", error.message, mention);
+// A glass of no size, of no number, or around the eye, and a container of a shape that is none.
+static void test_absurd_glasses(void **state) {
+  (void)state;
+  Harness harness = harness_open(CONTEXT_AUTO, WIDTH, HEIGHT);
+  TestFrame *t = test_frame_create(2, 0.1f);
+  test_frame_add(t, 1, 0.5f, 0.5f);
+  const SimContainer glasses[] = {{{NAN, 0, 0}, {3, 1, 1}},        {{0, 0, 0}, {INFINITY, 1, 1}},
+                                  {{0, 0, 0}, {0, 0, 0}},          {{3, 3, 3}, {0, 0, 0}},
+                                  {{-1e30f, 0, 0}, {1e30f, 1, 1}}, {{0, 0, 0}, {1e-30f, 1e-30f, 1e-30f}},
+                                  {{0, 0, 0}, {3, 0, 1}},          {{-20, -20, -20}, {20, 20, 20}},
+                                  {{1, 0, 3.5f}, {2, 1, 4.5f}},    {{1.4f, 0.9f, 3.9f}, {1.6f, 1.1f, 4.1f}},
+                                  {{1.5f, 0, 2}, {2.5f, 1, 6}}};
+  for (size_t i = 0; i < sizeof glasses / sizeof glasses[0]; ++i) {
+    t->frame.container = glasses[i];
+    t->frame.container.shape = SIM_CONTAINER_GLASS;
+    uint8_t *rgb = draw_default(&harness, t, &front);
+    assert_int_equal(black_pixels(rgb), 0);
+    free(rgb);
+    assert_layers_finite(&harness, t, &front);
+  }
+  t->frame.container = (SimContainer){{0, 0, 0}, {3, 1.6f, 1}, (SimContainerShape)9};
+  uint8_t *unknown = draw_default(&harness, t, &front);
+  RenderSettings settings = render_default_settings();
+  settings.container_visible = false;
+  uint8_t *hidden = harness_draw(&harness, &t->frame, &front, &settings);
+  assert_memory_equal(unknown, hidden, 3 * WIDTH * HEIGHT);
+  free(unknown);
+  free(hidden);
+  test_frame_destroy(t);
+  harness_close(&harness);
+}
+
+// ---- Meshes ----------------------------------------------------------------------------------------------------------
+
+// Triangles that make no sense are left out, and so is a mesh of nothing else.
+static void test_absurd_meshes(void **state) {
+  (void)state;
+  Harness harness = harness_open(CONTEXT_AUTO, WIDTH, HEIGHT);
+  TestFrame *t = test_frame_create(2, 0.1f);
+  test_frame_add(t, 1, 0.5f, 0.5f);
+  uint8_t *without = draw_default(&harness, t, &front);
+  const float vertex[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, NAN, 0, 0, 0, INFINITY, 0, 2e6f, 0, 0, 0.5f, 0.5f, 0};
+  const int32_t bad[] = {0, 1,         3,         0, 4, 1, 5, 0, 1, 0, 1, 7, 0, -1,
+                         2, INT32_MIN, INT32_MAX, 0, 1, 1, 2, 0, 0, 0, 1, 6, 2};
+  const int32_t one_good[] = {0, 1, 9, 0, 1, 2, 3, 4, 5};
+  const SimMesh absurd[] = {
+      {7, 9, vertex, bad},  {0, 9, vertex, bad}, {7, 0, vertex, bad},  {-3, 9, vertex, bad},
+      {7, -1, vertex, bad}, {7, 9, NULL, bad},   {7, 9, vertex, NULL}, {INT32_MIN, INT32_MIN, vertex, bad},
+      {7, 1, vertex, bad},
+  };
+  SimObstacle bodies[sizeof absurd / sizeof absurd[0] + 1];
+  const int32_t count = (int32_t)(sizeof bodies / sizeof bodies[0]);
+  for (int32_t i = 0; i < count; ++i) {
+    bodies[i] =
+        (SimObstacle){SIM_MESH, {0}, {1, 0.5f, 1}, {0, 0, 0, 1}, {1, 0, 0}, 0, i + 1 < count ? &absurd[i] : NULL};
+  }
+  t->frame.obstacle_count = count;
+  t->frame.obstacles = bodies;
+  uint8_t *with = draw_default(&harness, t, &front);
+  assert_memory_equal(without, with, 3 * WIDTH * HEIGHT);
+  // Of one good triangle among bad ones, that one is drawn.
+  const SimMesh good = {7, 3, vertex, one_good};
+  bodies[0].mesh = &good;
+  uint8_t *one = draw_default(&harness, t, &front);
+  assert_memory_not_equal(without, one, 3 * WIDTH * HEIGHT);
+  assert_layers_finite(&harness, t, &front);
+  free(without);
+  free(with);
+  free(one);
+  test_frame_destroy(t);
+  harness_close(&harness);
+}
+
+// Many faces around one vertex take no time to speak of; too many faces are refused in one sentence.
+static void test_large_meshes(void **state) {
+  (void)state;
+  Harness harness = harness_open(CONTEXT_AUTO, WIDTH, HEIGHT);
+  TestFrame *t = test_frame_create(1, 0.1f);
+  const int32_t rim = 100000;
+  SimMesh *cone = test_mesh_create(rim + 1, rim);
+  float *vertex = (float *)(uintptr_t)cone->vertex;
+  int32_t *triangle = (int32_t *)(uintptr_t)cone->triangle;
+  vertex[3 * rim + 1] = 0.8f;
+  for (int32_t i = 0; i < rim; ++i) {
+    const float a = 6.2831853f * (float)i / (float)rim;
+    vertex[3 * i] = 0.4f * cosf(a);
+    vertex[3 * i + 2] = 0.4f * sinf(a);
+    triangle[3 * i] = i;
+    triangle[3 * i + 1] = rim;
+    triangle[3 * i + 2] = (i + 1) % rim;
+  }
+  const SimObstacle body = {SIM_MESH, {0}, {1.5f, 0, 0.5f}, {0, 0, 0, 1}, {0.9f, 0.1f, 0.1f}, 0, cone};
+  t->frame.obstacle_count = 1;
+  t->frame.obstacles = &body;
+  uint8_t *rgb = draw_default(&harness, t, &front);
+  int red = 0;
+  for (int i = 0; i < WIDTH * HEIGHT; ++i) red += rgb[3 * i] > 2 * rgb[3 * i + 1];
+  assert_true(red > 100);
+  free(rgb);
+  SimMesh *huge = test_mesh_create(3, 1000001);
+  const SimObstacle too_large = {SIM_MESH, {0}, {1.5f, 0, 0.5f}, {0, 0, 0, 1}, {0.9f, 0.1f, 0.1f}, 0, huge};
+  t->frame.obstacles = &too_large;
+  const RenderSettings settings = render_default_settings();
+  expect_refusal(&harness, &t->frame, &front, &settings, "1000001 triangles is too large");
+  // And nothing is lost by it.
+  t->frame.obstacles = &body;
+  free(draw_default(&harness, t, &front));
+  test_mesh_destroy(cone);
+  test_mesh_destroy(huge);
+  test_frame_destroy(t);
+  harness_close(&harness);
 }
 
 static void test_bad_settings_and_views_are_refused(void **state) {
@@ -276,6 +405,9 @@ int main(void) {
       cmocka_unit_test(test_camera_in_the_water),
       cmocka_unit_test(test_extreme_sizes_of_things),
       cmocka_unit_test(test_absurd_containers_and_obstacles),
+      cmocka_unit_test(test_absurd_glasses),
+      cmocka_unit_test(test_absurd_meshes),
+      cmocka_unit_test(test_large_meshes),
       cmocka_unit_test(test_bad_settings_and_views_are_refused),
       cmocka_unit_test(test_tiny_and_odd_pictures),
   };

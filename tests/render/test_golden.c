@@ -98,6 +98,25 @@ static void test_obstacles(void **state) {
   test_frame_destroy(t);
 }
 
+static void test_shapes(void **state) {
+  (void)state;
+  TestFrame *t = test_frame_shapes();
+  const RenderSettings settings = render_default_settings();
+  check("shapes", t, &tank_view, &settings);
+  test_frame_destroy(t);
+}
+
+static void test_glass(void **state) {
+  (void)state;
+  TestFrame *t = test_frame_glass();
+  RenderSettings settings = render_default_settings();
+  settings.tile_size = 0.05f;
+  for (int k = 0; k < 3; ++k) settings.absorption[k] *= 8;
+  const RenderView view = {{0.02f, 0.17f, 0.34f}, {0.04f, 0.06f, 0.04f}, 30};
+  check("glass", t, &view, &settings);
+  test_frame_destroy(t);
+}
+
 static void test_empty_tank_without_sun(void **state) {
   (void)state;
   TestFrame *t = test_frame_create(1, 0.0175f);
@@ -111,6 +130,8 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_pool),
       cmocka_unit_test(test_obstacles),
+      cmocka_unit_test(test_shapes),
+      cmocka_unit_test(test_glass),
       cmocka_unit_test(test_empty_tank_without_sun),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "render/gpu.h"
+#include "render/picture.h"
 
 static const GpuSource sources[] = {
     {"good.glsl", "#ifdef VERTEX_STAGE\nvoid main() { gl_Position = vec4(0.0); }\n#else\n"
@@ -89,8 +89,13 @@ static void test_no_object_is_left_behind(void **state) {
   int before = 0;
   TestFrame *t = test_frame_create(1, 0.0175f);
   test_frame_add(t, 1, 1, 0.5f);
-  t->frame.obstacle_count = 1;
-  t->obstacles[0] = (SimObstacle){SIM_SPHERE, {0.3f, 0, 0}, {1, 0.5f, 0.5f}, {0, 0, 0, 1}, {1, 0, 0}};
+  t->frame.obstacle_count = SIM_SHAPE_COUNT;
+  t->frame.container.shape = SIM_CONTAINER_GLASS;
+  t->mesh = test_mesh_torus(0.2f, 0.1f, 8, 6);
+  for (int shape = 0; shape < SIM_SHAPE_COUNT; ++shape) {
+    t->obstacles[shape] =
+        (SimObstacle){(SimShape)shape, {0.3f, 0.4f, 0.3f}, {1, 0.5f, 0.5f}, {0, 0, 0, 1}, {1, 0, 0}, 3, t->mesh};
+  }
   const RenderView view = harness_view(1.5f, 1, 4, 1.5f, 0.5f, 0.5f, 38);
   const RenderSettings settings = render_default_settings();
   for (int i = 0; i < 51; ++i) {
@@ -112,6 +117,42 @@ static void test_no_object_is_left_behind(void **state) {
     assert_int_equal(count_objects(), before);
   }
   test_frame_destroy(t);
+  context_destroy(context);
+}
+
+// A mesh goes to the GPU once and stays as long as it is shown; what counts is its content, not its address.
+static void test_meshes_are_uploaded_once(void **state) {
+  (void)state;
+  AppError app_error = {0};
+  Context *context = context_create_headless(CONTEXT_AUTO, &app_error);
+  assert_non_null(context);
+  RenderMeshes meshes = {0};
+  RenderError error = {0};
+  SimMesh *ring = test_mesh_torus(0.2f, 0.1f, 8, 6), *same = test_mesh_torus(0.2f, 0.1f, 8, 6);
+  SimMesh *other = test_mesh_torus(0.3f, 0.1f, 8, 6);
+  int32_t a = -1, b = -1, c = -1;
+  assert_true(render_meshes_take(&meshes, ring, &a, &error) && render_meshes_take(&meshes, same, &b, &error) &&
+              render_meshes_take(&meshes, other, &c, &error));
+  assert_int_equal(a, b);
+  assert_int_not_equal(a, c);
+  assert_int_equal(meshes.count, 2);
+  assert_int_equal(meshes.meshes[a].corner_count, 3 * 2 * 8 * 6);
+  assert_float_equal(meshes.meshes[a].reach, 0.3f, 1e-6f);
+  const unsigned buffer = meshes.meshes[a].corners.id;
+  // The next picture shows only the first, the one after that none.
+  render_meshes_forget(&meshes);
+  assert_true(render_meshes_take(&meshes, same, &b, &error));
+  assert_int_equal(meshes.meshes[b].corners.id, buffer);
+  render_meshes_forget(&meshes);
+  assert_int_equal(meshes.count, 1);
+  assert_int_equal(meshes.meshes[0].corners.id, buffer);
+  render_meshes_forget(&meshes);
+  assert_int_equal(meshes.count, 0);
+  assert_int_equal(glIsBuffer(buffer), GL_FALSE);
+  render_meshes_destroy(&meshes);
+  test_mesh_destroy(ring);
+  test_mesh_destroy(same);
+  test_mesh_destroy(other);
   context_destroy(context);
 }
 
@@ -174,9 +215,13 @@ static void test_passes_are_timed(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_shader_errors_name_file_and_line), cmocka_unit_test(test_programs_are_made_once),
-      cmocka_unit_test(test_no_object_is_left_behind),         cmocka_unit_test(test_sizes_out_of_range_are_refused),
-      cmocka_unit_test(test_driver_errors_are_counted),        cmocka_unit_test(test_passes_are_timed),
+      cmocka_unit_test(test_shader_errors_name_file_and_line),
+      cmocka_unit_test(test_programs_are_made_once),
+      cmocka_unit_test(test_no_object_is_left_behind),
+      cmocka_unit_test(test_sizes_out_of_range_are_refused),
+      cmocka_unit_test(test_meshes_are_uploaded_once),
+      cmocka_unit_test(test_driver_errors_are_counted),
+      cmocka_unit_test(test_passes_are_timed),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
