@@ -2,7 +2,7 @@
 //
 // Cubic spline with q = r/h, a = max(0, 1 − q), b = max(0, ½ − q): W = 2 s (a³ − 4 b³) and dW/dr = 6 s/h (4 b² − a²),
 // s = 8/(πh³). Both are summed without their constant factors, which come in at the end.
-#include "sim/solver_pbf.h"
+#include "sim/solver.h"
 #include "sim/wide/kernels.h"
 #include "sim/wide/walls.h"
 
@@ -122,7 +122,7 @@ void WIDE(sim_pbf_correct)(int32_t begin, int32_t end, const void *context, doub
   const SimStep *step = context;
   const SimNeighbours *lists = step->neighbours;
   SimParticles *p = step->particles;
-  SimF zero = sim_f(0), most = zero, all = zero, wall = sim_f(SIM_PBF_WALL);
+  SimF zero = sim_f(0), most = zero, all = zero, wall = sim_f(step->wall_answer);
   for (int32_t i = begin; i < end; i += SIM_LANES) {
     const int32_t chunk = i / SIM_CHUNK;
     const uint32_t *index = lists->index + (size_t)lists->start[chunk] * SIM_CHUNK + i % SIM_CHUNK;
