@@ -36,7 +36,8 @@ static void predict_kernel(int32_t begin, int32_t end, const void *context) {
       to[k] = from[k] + step->dt * v;
     }
     const float free[3] = {to[0], to[1], to[2]};
-    sim_boundary_clamp(step->boundary, NULL, from, to);
+    int32_t clamped = sim_boundary_clamp(step->boundary, NULL, from, to);
+    if (step->reaction) sim_reaction_predicted(step->reaction, i, clamped, free, to);
     for (int k = 0; k < 3; k++) {
       now->predicted[k][i] = to[k];
       if (to[k] != free[k]) now->next_velocity[k][i] += (to[k] - free[k]) * step->inverse_dt;
@@ -92,6 +93,7 @@ static void boundary_kernel(int32_t begin, int32_t end, const void *context) {
     float point[3] = {p->now.predicted[0][i], p->now.predicted[1][i], p->now.predicted[2][i]};
     SimSolid solid;
     sim_boundary_solid(step->boundary, NULL, point, &solid);
+    if (step->reaction) sim_reaction_solid(step->reaction, i, &solid);
     p->solid[i] = solid.share;
     for (int k = 0; k < 3; k++) p->solid_gradient[k][i] = solid.gradient[k];
   }
@@ -214,7 +216,8 @@ static void correct_kernel(int32_t begin, int32_t end, const void *context, doub
       from[k] = p->now.position[k][i];
       to[k] = free[k] = p->now.predicted[k][i] + move[k];
     }
-    sim_boundary_clamp(step->boundary, NULL, from, to);
+    int32_t clamped = sim_boundary_clamp(step->boundary, NULL, from, to);
+    if (step->reaction) sim_reaction_corrected(step->reaction, i, p->lambda[i], clamped, free, to);
     for (int k = 0; k < 3; k++) {
       if (to[k] != free[k]) move[k] = to[k] - p->now.predicted[k][i];
       p->now.next_velocity[k][i] += move[k] * step->inverse_dt;

@@ -19,6 +19,7 @@
 #include "sim/boundary.h"
 #include "sim/neighbours.h"
 #include "sim/particles.h"
+#include "sim/reaction.h"
 #include "sim/sim.h"
 
 /// What travels through one substep.
@@ -36,6 +37,7 @@ typedef struct SimStep {
   const SimBoundary *boundary;
   SimParticles *particles;
   SimNeighbours *neighbours;
+  SimReaction *reaction;      ///< NULL where no body floats
 } SimStep;
 
 /// v* = v + dt a, x* = x + dt v*, clamped; a is gravity and the pushes.

@@ -119,6 +119,7 @@ static bool start(SimWorld *world, SimError *error) {
   world->counts = (SimCounts){0};
   world->speed_limit = 0;
   sim_world_raise_speed_limit(world);
+  if (!sim_motion_reset(world)) return sim_fail(error, "out of memory");
   for (int32_t b = 0; b < world->def.block_count; b++)
     if (sim_fill_block(world, &world->blocks[b], true, error) < 0) return false;
   return sim_world_settle(world, error);
@@ -144,7 +145,8 @@ SimWorld *sim_world_create(const SimWorldDef *def, SimError *error) {
   world->boundary.clearance = def->particle_radius;
   world->boundary.body_count = def->obstacle_count;
   world->boundary.bodies = world->bodies;
-  if (!start(world, error)) {
+  bool ok = sim_motion_create(world) || sim_fail(error, "out of memory");
+  if (!ok || !start(world, error)) {
     sim_world_destroy(world);
     return NULL;
   }
@@ -159,6 +161,7 @@ void sim_world_destroy(SimWorld *world) {
   sim_grid_free(&world->fill_sort);
   sim_neighbours_free(&world->neighbours);
   for (int k = 0; k < 3; k++) sim_release(world->fill_position[k]);
+  sim_motion_destroy(world);
   sim_release(world->colour);
   sim_release(world->blocks);
   sim_release(world->obstacles);
@@ -199,7 +202,8 @@ static SimStep make_step(SimWorld *world, float dt) {
                   .pushes = world->pushes,
                   .boundary = &world->boundary,
                   .particles = &world->particles,
-                  .neighbours = &world->neighbours};
+                  .neighbours = &world->neighbours,
+                  .reaction = world->motion.rigid ? &world->motion.reaction : NULL};
   memcpy(step.gravity, world->gravity, sizeof step.gravity);
   return step;
 }
@@ -260,6 +264,14 @@ static bool check_move(SimWorld *world, double moved, SimError *error) {
                   world->particles.now.id[i], world->time);
 }
 
+// What the sweep over the particles that has just ended gave to floating bodies.
+static void collect_reaction(SimWorld *world, const SimStep *step, bool last) {
+  float *const *x = world->particles.now.predicted;
+  if (step->reaction)
+    sim_reaction_collect(step->reaction, world->threads, world->particles.count, x[0], x[1], x[2], 1, step->inverse_dt,
+                         last);
+}
+
 // The density iterations. λ is never computed from stale neighbours: when the particles have used up the lists' margin,
 // the lists are built anew.
 static bool solve_density(SimWorld *world, SimStep *step, double *since, SimError *error) {
@@ -276,6 +288,7 @@ static bool solve_density(SimWorld *world, SimStep *step, double *since, SimErro
     sim_pbf_density(step);
     lap(world, SIM_STAGE_density, since);
     double move = sim_pbf_correct(step);
+    collect_reaction(world, step, k == world->def.iterations - 1);
     lap(world, SIM_STAGE_correct, since);
     if (!check_move(world, move, error)) return false;
     moved += move;
@@ -283,7 +296,7 @@ static bool solve_density(SimWorld *world, SimStep *step, double *since, SimErro
   return true;
 }
 
-static void commit(SimWorld *world, float dt) {
+static void commit(SimWorld *world, double end) {
   SimSorted *now = &world->particles.now;
   for (int k = 0; k < 3; k++) {
     float *position = now->position[k], *velocity = now->velocity[k];
@@ -293,17 +306,21 @@ static void commit(SimWorld *world, float dt) {
     now->next_velocity[k] = velocity;
   }
   world->settled = false;
-  world->time += (double)dt;
+  world->time = end;
   world->counts.substeps++;
   world->profile.substeps++;
 }
 
-static bool substep(SimWorld *world, float dt, SimError *error) {
+static bool substep(SimWorld *world, double end, SimError *error) {
   double since = sim_milliseconds();
-  SimStep step = make_step(world, dt);
+  SimStep step = make_step(world, (float)(end - world->time));
   world->settled = false;
 
+  if (step.reaction && !sim_reaction_reserve(step.reaction, world->particles.count))
+    return sim_fail(error, "out of memory");
+  sim_motion_begin(world, end);
   sim_pbf_predict(&step);
+  collect_reaction(world, &step, false);
   if (!check(world, SIM_STAGE_predict, error)) return false;
   lap(world, SIM_STAGE_predict, &since);
 
@@ -318,7 +335,9 @@ static bool substep(SimWorld *world, float dt, SimError *error) {
   sim_pbf_viscosity(&step);
   lap(world, SIM_STAGE_viscosity, &since);
 
-  commit(world, dt);
+  if (!sim_motion_end(world, end, error)) return false;
+  commit(world, end);
+  sim_motion_commit(world);
   return true;
 }
 
@@ -331,7 +350,7 @@ static double longest_substep(const SimWorld *world) {
   if (world->def.time_step > 0 && (double)world->def.time_step < longest) longest = (double)world->def.time_step;
   double speed = (double)largest_speed(world, world->particles.now.velocity) + pull * longest;
   double cfl = speed > 0 ? (double)world->def.cfl * spacing / speed : longest;
-  return fmin(longest, cfl);
+  return sim_motion_longest(world, fmin(longest, cfl));
 }
 
 bool sim_world_advance(SimWorld *world, double duration, SimError *error) {
@@ -345,7 +364,8 @@ bool sim_world_advance(SimWorld *world, double duration, SimError *error) {
   for (double rest = duration; rest > 0 && !world->failed;) {
     double substeps = ceil(rest / longest_substep(world) - 1e-6);
     double dt = substeps > 1 ? rest / substeps : rest;
-    world->failed = !substep(world, (float)dt, &world->failure);
+    world->failed = !substep(world, substeps > 1 ? end - (rest - dt) : end, &world->failure);
+    if (world->failed) sim_motion_cancel(world);
     rest = substeps > 1 ? rest - dt : 0;
   }
   world->push_count = 0;
@@ -367,6 +387,7 @@ bool sim_world_settle(SimWorld *world, SimError *error) {
     memcpy(now->predicted[k], now->position[k], sizeof(float) * (size_t)world->particles.count);
   if (!find_neighbours(world, now->position, SIM_STAGE_frame, SIM_STAGE_frame, &since, error)) return false;
   SimStep step = make_step(world, 0);
+  step.reaction = NULL; // looking at the water pushes nobody
   sim_pbf_boundary(&step);
   sim_pbf_density(&step);
   lap(world, SIM_STAGE_frame, &since);

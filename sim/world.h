@@ -3,6 +3,7 @@
 #ifndef LIDO_SIM_WORLD_H
 #define LIDO_SIM_WORLD_H
 
+#include "sim/motion.h"
 #include "sim/solver_pbf.h"
 
 #define SIM_DEF_COOKIE 0x4c69646fu
@@ -14,6 +15,7 @@ struct SimWorld {
   SimObstacle *obstacles;      ///< with their present poses
   SimBody *bodies;
   SimMeshDistance **meshes;    ///< (obstacle_count), of the obstacles that are meshes; equal ones share one
+  SimMotionState motion;
   int32_t threads;
 
   SimCubic cubic;
