@@ -284,6 +284,9 @@ bool sim_motion_end(SimWorld *world, double end, SimError *error) {
   double dt = end - world->time;
   if (!sim_rigid_step(rigid, dt, world->gravity, world->motion.reaction.given, world->bodies))
     return sim_fail(error, "out of memory");
+  float *const *x = world->particles.now.predicted;
+  sim_reaction_follow(&world->motion.reaction, world->threads, world->particles.count, x[0], x[1], x[2], 1,
+                      world->particles.now.next_velocity);
   for (int32_t b = 0; b < world->def.obstacle_count; b++) {
     if (world->def.obstacles[b].motion != SIM_FLOATING) continue;
     double speed = sim_rigid_speed(rigid, b, 0);

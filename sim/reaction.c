@@ -8,6 +8,9 @@
 #include "sim/memory.h"
 #include "sim/parallel.h"
 
+/// Share of its overlap with a wedged particle that a body is asked to take back in a substep.
+#define WEDGE 0.5f
+
 bool sim_reaction_create(SimReaction *reaction, const SimBoundary *boundary, const SimRigid *rigid,
                          double particle_mass) {
   float slope;
@@ -49,28 +52,35 @@ void sim_reaction_clear(SimReaction *reaction) {
 // ---- Notes -----------------------------------------------------------------------------------------------------------
 
 // The floating body against which the clamp left a particle, −1: none. Where several bodies touch, the nearest one.
-static int32_t clamped_by(const SimBoundary *boundary, const float point[3]) {
+static int32_t clamped_by(const SimBoundary *boundary, const float point[3], float *gap, float normal[3]) {
   int32_t nearest = -1;
-  float least = 1.01f * boundary->clearance;
+  *gap = 1.01f * boundary->clearance;
   for (int32_t b = 0; b < boundary->body_count; b++) {
     const SimBody *body = &boundary->bodies[b];
-    float normal[3], d2 = 0, reach = body->bound + least;
+    float n[3], d2 = 0, reach = body->bound + *gap;
     for (int k = 0; k < 3; k++) d2 += (point[k] - body->position[k]) * (point[k] - body->position[k]);
     if (!(d2 < reach * reach)) continue;
-    float gap = sim_body_distance(body, point, normal);
-    if (gap < least) least = gap, nearest = b;
+    float distance = sim_body_distance(body, point, n);
+    if (!(distance < *gap)) continue;
+    *gap = distance;
+    memcpy(normal, n, sizeof n);
+    nearest = b;
   }
   return nearest >= 0 && boundary->bodies[nearest].floats ? nearest : -1;
 }
 
-// What the clamp moved beyond what the container's walls alone would have.
-static int32_t clamp_share(const SimReaction *reaction, const float free[3], const float to[3], float shift[3]) {
-  if (memcmp(free, to, 3 * sizeof(float)) == 0) return -1;
-  int32_t body = clamped_by(reaction->boundary, to);
+// What the clamp moved beyond what the container's walls alone would have. A particle that is wedged between a body and a
+// wall cannot go where the body wants it: the wall holds it. The body feels that all the same, once a substep
+// (`wedge`, otherwise 0); else it would sink into a wetted floor as if nothing were there.
+static int32_t clamp_share(const SimReaction *reaction, const float free[3], const float to[3], float wedge,
+                           float shift[3]) {
+  float gap, normal[3];
+  if (wedge == 0 && memcmp(free, to, 3 * sizeof(float)) == 0) return -1;
+  int32_t body = clamped_by(reaction->boundary, to, &gap, normal);
   if (body < 0) return -1;
-  float walls[3] = {free[0], free[1], free[2]};
+  float walls[3] = {free[0], free[1], free[2]}, missing = wedge * (reaction->boundary->clearance - gap);
   sim_boundary_clamp(&reaction->walls, free, walls);
-  for (int k = 0; k < 3; k++) shift[k] += to[k] - walls[k];
+  for (int k = 0; k < 3; k++) shift[k] += to[k] - walls[k] + (missing > 0 ? missing * normal[k] : 0);
   return body;
 }
 
@@ -80,7 +90,7 @@ static void note(SimReaction *reaction, int32_t i, const float shift[3]) {
 
 void sim_reaction_predicted(SimReaction *reaction, int32_t i, const float free[3], const float to[3]) {
   float shift[3] = {0, 0, 0};
-  reaction->body[i] = clamp_share(reaction, free, to, shift);
+  reaction->body[i] = clamp_share(reaction, free, to, WEDGE, shift);
   for (int k = 0; k < 3; k++) reaction->gradient[k][i] = 0;
   note(reaction, i, shift);
 }
@@ -97,7 +107,7 @@ void sim_reaction_corrected(SimReaction *reaction, int32_t i, float lambda, cons
   float shift[3] = {0, 0, 0};
   if (reaction->body[i] >= 0)
     for (int k = 0; k < 3; k++) shift[k] = lambda * reaction->gradient[k][i];
-  int32_t body = clamp_share(reaction, free, to, shift);
+  int32_t body = clamp_share(reaction, free, to, 0, shift);
   if (reaction->body[i] < 0) reaction->body[i] = body;
   note(reaction, i, shift);
 }
@@ -126,40 +136,81 @@ static void add_push(SimGiven *given, const double arm[3], const double push[3])
   }
 }
 
-// The particle belongs to the layer of water that cannot but follow the surface's moves along its normal n: it adds
-// m w (n, r × n)(n, r × n)ᵀ, w falling from 1 at the first layer's place to 0 out of reach.
-static void add_layer(const SimReaction *reaction, SimGiven *given, int32_t i, const double arm[3]) {
-  double g[3], length = 0, row[6];
-  for (int k = 0; k < 3; k++) g[k] = (double)reaction->gradient[k][i];
-  length = sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
-  if (!(length > 0)) return;
-  double weight = reaction->particle_mass * fmin(1, length * (double)reaction->inverse_slope);
+// A particle that is pressed by the body belongs to the layer of water that cannot but follow the surface's moves along its
+// normal n: as a row, n and r × n. Its weight falls from 1 at the first layer's place to 0 out of reach.
+static double layer_row(const SimReaction *reaction, int32_t i, const double arm[3], double row[6]) {
+  double g[3], length = 0;
+  bool pressed = false;
+  for (int k = 0; k < 3; k++) {
+    g[k] = (double)reaction->gradient[k][i];
+    length += g[k] * g[k];
+    pressed = pressed || reaction->shift[k][i] != 0;
+  }
+  length = sqrt(length);
+  if (!pressed || !(length > 0)) return 0;
   for (int k = 0; k < 3; k++) row[k] = g[k] / length;
   for (int k = 0; k < 3; k++) {
     int a = (k + 1) % 3, b = (k + 2) % 3;
     row[3 + k] = arm[a] * row[b] - arm[b] * row[a];
   }
+  return fmin(1, length * (double)reaction->inverse_slope);
+}
+
+static void add_layer(const SimReaction *reaction, SimGiven *given, int32_t i, const double arm[3]) {
+  double row[6], weight = reaction->particle_mass * layer_row(reaction, i, arm, row);
+  if (weight == 0) return;
   for (int r = 0, at = 0; r < 6; r++)
     for (int c = 0; c <= r; c++) given->layer[at++] += weight * row[r] * row[c];
 }
 
+/// Where the particles are, for the sums and for sim_reaction_follow.
+typedef struct Places {
+  const SimReaction *reaction;
+  const float *x[3];
+  int32_t stride;
+  float *const *velocity;
+} Places;
+
+static int32_t arm_of(const Places *places, int32_t i, double arm[3]) {
+  int32_t slot = sim_rigid_slot(places->reaction->rigid, places->reaction->body[i]);
+  const double *centre = sim_rigid_centre(places->reaction->rigid, slot);
+  for (int k = 0; k < 3; k++) arm[k] = (double)places->x[k][(int64_t)i * places->stride] - centre[k];
+  return slot;
+}
+
 void sim_reaction_collect(SimReaction *reaction, int32_t threads, int32_t count, const float *x, const float *y,
                           const float *z, int32_t stride, float inverse_dt, bool last) {
+  const Places places = {reaction, {x, y, z}, stride, NULL};
+  double scale = -reaction->particle_mass * (double)inverse_dt, arm[3], push[3];
   sim_parallel_for(threads, count, noted_kernel, reaction);
-  double scale = -reaction->particle_mass * (double)inverse_dt;
   for (int32_t block = 0; block * (int64_t)SIM_BLOCK < count; block++) {
     if (!reaction->noted[block]) continue;
-    int64_t begin = block * (int64_t)SIM_BLOCK, end = begin + SIM_BLOCK < count ? begin + SIM_BLOCK : count;
-    for (int32_t i = (int32_t)begin; i < end; i++) {
+    int32_t begin = block * SIM_BLOCK, end = count - begin < SIM_BLOCK ? count : begin + SIM_BLOCK;
+    for (int32_t i = begin; i < end; i++) {
       if (reaction->body[i] < 0) continue;
-      int32_t slot = sim_rigid_slot(reaction->rigid, reaction->body[i]);
-      const double *centre = sim_rigid_centre(reaction->rigid, slot);
-      const int64_t at = (int64_t)i * stride;
-      const double arm[3] = {(double)x[at] - centre[0], (double)y[at] - centre[1], (double)z[at] - centre[2]};
-      double push[3];
+      SimGiven *given = &reaction->given[arm_of(&places, i, arm)];
       for (int k = 0; k < 3; k++) push[k] = scale * (double)reaction->shift[k][i];
-      add_push(&reaction->given[slot], arm, push);
-      if (last) add_layer(reaction, &reaction->given[slot], i, arm);
+      add_push(given, arm, push);
+      if (last) add_layer(reaction, given, i, arm);
     }
   }
+}
+
+static void follow_kernel(int32_t begin, int32_t end, const void *context) {
+  const Places *places = context;
+  double arm[3], row[6];
+  for (int32_t i = begin; i < end; i++) {
+    if (places->reaction->body[i] < 0) continue;
+    const double *change = places->reaction->given[arm_of(places, i, arm)].change;
+    double along = 0, weight = layer_row(places->reaction, i, arm, row);
+    if (weight == 0) continue;
+    for (int k = 0; k < 6; k++) along += weight * row[k] * change[k];
+    for (int k = 0; k < 3; k++) places->velocity[k][i] += (float)(along * row[k]);
+  }
+}
+
+void sim_reaction_follow(const SimReaction *reaction, int32_t threads, int32_t count, const float *x, const float *y,
+                         const float *z, int32_t stride, float *const velocity[3]) {
+  const Places places = {reaction, {x, y, z}, stride, velocity};
+  sim_parallel_for(threads, count, follow_kernel, &places);
 }

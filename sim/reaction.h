@@ -54,4 +54,9 @@ void sim_reaction_rubbed(SimReaction *reaction, int32_t i, const float shift[3])
 void sim_reaction_collect(SimReaction *reaction, int32_t threads, int32_t count, const float *x, const float *y,
                           const float *z, int32_t stride, float inverse_dt, bool last);
 
+/// The layers of water take part in the bodies' change of velocity, once sim_rigid_step has found it. Places as for
+/// sim_reaction_collect, which was called for them with `last`; velocity[k][i] of particle i.
+void sim_reaction_follow(const SimReaction *reaction, int32_t threads, int32_t count, const float *x, const float *y,
+                         const float *z, int32_t stride, float *const velocity[3]);
+
 #endif

@@ -13,19 +13,20 @@
 // embedding program may use ODE too.
 //
 // The coupling with the water. A substep solves the water against poses predicted from the bodies' velocities, then gives
-// each body the opposite impulse I. That is explicit, and a body that is light against the water it has to push aside would be
-// thrown about: a velocity change u of one substep comes back in the next as −A u, A the water's added mass, and is amplified
-// by A/m (Causin, Gerbeau & Nobile, Added-mass effect in the design of partitioned algorithms, 2005). Therefore the body takes
-// up an impulse together with the layer of water that must go with it:
+// each body the opposite impulse I. Alone, that is unstable for a body that is light against the water it has to push aside:
+// a velocity change u of one substep comes back in the next as −A u, A the water's added mass, amplified by A/m (Causin,
+// Gerbeau & Nobile, Added-mass effect in the design of partitioned algorithms, 2005). Therefore the body takes up an impulse
+// together with the layer of water that is pressed against it and must go with it:
 //
-//   P = I + R + m g dt,   (M + K) u = P,   R' = K u
+//   (M + K) u = I + m g dt
 //
-// M is the body's 6 × 6 mass matrix, K that of the layer, R what is owed to the body from before. With −A u for I the rest
-// decays like (K − A)/(M + K): any K > (A − M)/2 is stable, K = A is best, and what is too much only delays the answer by about
-// K/(M + A) substeps. Nothing is lost: the momentum M v + R changes by exactly what was given. K is found from the particles
-// at the body: each adds m w (n, r × n)(n, r × n)ᵀ (reaction.c), so a ball that spins carries nothing along, and a body in
-// the air nothing at all. The water that follows reaches deeper than one layer, by some 0.3 times the body's width (a cube's
-// added mass is about 0.65, a ball's 0.5 times its own volume), so K is the layer's matrix times LAYER_DEPTH · width/spacing.
+// M is the body's 6 × 6 mass matrix, K that of the layer. The layer's water really gets its part K u of the impulse: every
+// particle of it is taken along by the surface's change of velocity, along the normal (reaction.c). So nothing is lost: what
+// the body did not take up is back in the water. What comes back in the next substep is then −(A − K) u, which is stable where
+// A < M + 2 K; and a body that falls onto water goes on with it, as after an inelastic impact, instead of being thrown back
+// by the momentum that the water took from a body which it could not slow down.
+// K is found from the particles at the body: each adds m w (n, r × n)(n, r × n)ᵀ, so a ball that spins takes nothing along,
+// and a body in the air nothing at all.
 //
 // Limits. Contacts act on the body alone, without K: its speed there is given by what it touches. dWorldStep grows with the
 // third power of the contacts of one heap: meant for tens of bodies in touch, not for thousands. A body starts and stays in
@@ -45,7 +46,6 @@
 #define GLASS_WALLS 64
 #define MAX_WALLS (GLASS_WALLS + 2)
 #define MAX_CONTACTS 64
-#define LAYER_DEPTH 0.3
 /// Coulomb's coefficient between bodies, and between bodies and walls: wet wood on stone.
 #define CONTACT_FRICTION 0.3
 /// Share of an overlap that a contact takes back in one step.
@@ -60,8 +60,6 @@ enum { FLOATS = 1, STANDS = 2 };
 typedef struct Floater {
   int32_t index;       ///< of its obstacle
   SimMass mass;
-  double width;        ///< m, of a cube with the same radius of gyration
-  double owed[6];      ///< N s, N m s: given by the water, not taken up yet (R)
   double ahead[3];     ///< m, the centre of mass at the predicted pose
 } Floater;
 
@@ -193,7 +191,6 @@ static void make_body(SimRigid *rigid, int32_t index) {
   dBodySetMass(body, &mass);
   dBodySetFiniteRotationMode(body, 1);
   place_body(body, q, position, floater->mass.centre);
-  memset(floater->owed, 0, sizeof floater->owed);
   make_shape(rigid, index);
 }
 
@@ -225,8 +222,6 @@ static void make_floater(SimRigid *rigid, int32_t index, Floater *floater) {
   const SimObstacleDef *def = &rigid->defs[index];
   floater->index = index;
   floater->mass = sim_mass_make(&def->body, (double)def->density);
-  const double *j = floater->mass.inertia;
-  floater->width = sqrt(2 * (j[0] + j[1] + j[2]) / floater->mass.mass);
   rigid->lightest = fmin(rigid->lightest, floater->mass.mass);
 }
 
@@ -355,11 +350,11 @@ double sim_rigid_speed(const SimRigid *rigid, int32_t index, double reach) {
 // ---- The step --------------------------------------------------------------------------------------------------------
 
 // The body's mass matrix in the world's axes plus the layer's, as a lower triangle.
-static void mass_matrix(const Floater *floater, dBodyID body, const SimGiven *given, double scale, double a[6][6]) {
+static void mass_matrix(const Floater *floater, dBodyID body, const SimGiven *given, double a[6][6]) {
   const double *j = floater->mass.inertia, *r = dBodyGetRotation(body);
   const double inertia[3][3] = {{j[0], j[3], j[4]}, {j[3], j[1], j[5]}, {j[4], j[5], j[2]}};
   for (int row = 0, at = 0; row < 6; row++)
-    for (int column = 0; column <= row; column++) a[row][column] = scale * given->layer[at++];
+    for (int column = 0; column <= row; column++) a[row][column] = given->layer[at++];
   for (int row = 0; row < 3; row++) {
     a[row][row] += floater->mass.mass;
     for (int column = 0; column <= row; column++)
@@ -386,25 +381,23 @@ static void solve6(double a[6][6], double b[6]) {
   }
 }
 
-// Take up what the water gave, as derived above: what the body itself gets becomes ODE's force and torque of the step.
-static void take_up(SimRigid *rigid, Floater *floater, double dt, const float gravity[3], const SimGiven *given) {
+// Take up what the water gave, as derived above; what remains for the body itself becomes ODE's force and torque.
+static void take_up(const SimRigid *rigid, const Floater *floater, double dt, const float gravity[3], SimGiven *given) {
   dBodyID body = rigid->bodies[floater->index];
-  double total[6], change[6], a[6][6], scale = fmax(1, LAYER_DEPTH * floater->width / rigid->spacing);
+  double total[6], a[6][6];
   for (int k = 0; k < 3; k++) {
-    total[k] = given->linear[k] + floater->owed[k] + floater->mass.mass * (double)gravity[k] * dt;
-    total[3 + k] = given->angular[k] + floater->owed[3 + k];
+    total[k] = given->linear[k] + floater->mass.mass * (double)gravity[k] * dt;
+    total[3 + k] = given->angular[k];
   }
-  mass_matrix(floater, body, given, scale, a);
-  memcpy(change, total, sizeof change);
-  solve6(a, change);
-  // R' = K u, row by row of the symmetric matrix; the rest is the body's.
+  mass_matrix(floater, body, given, a);
+  memcpy(given->change, total, sizeof total);
+  solve6(a, given->change);
   for (int row = 0; row < 6; row++) {
-    floater->owed[row] = 0;
     for (int column = 0; column < 6; column++) {
       int high = row > column ? row : column, low = row > column ? column : row;
-      floater->owed[row] += scale * given->layer[high * (high + 1) / 2 + low] * change[column];
+      total[row] -= given->layer[high * (high + 1) / 2 + low] * given->change[column]; // the layer's part, K u
     }
-    total[row] = (total[row] - floater->owed[row]) / dt;
+    total[row] /= dt;
   }
   dBodySetForce(body, total[0], total[1], total[2]);
   dBodySetTorque(body, total[3], total[4], total[5]);
@@ -458,7 +451,7 @@ static void move_others(SimRigid *rigid, const SimBody *bodies) {
   }
 }
 
-bool sim_rigid_step(SimRigid *rigid, double dt, const float gravity[3], const SimGiven *given, const SimBody *bodies) {
+bool sim_rigid_step(SimRigid *rigid, double dt, const float gravity[3], SimGiven *given, const SimBody *bodies) {
   open_thread();
   move_others(rigid, bodies);
   for (int32_t s = 0; s < rigid->floating; s++) take_up(rigid, &rigid->floaters[s], dt, gravity, &given[s]);
@@ -483,7 +476,7 @@ void sim_rigid_measures(const SimRigid *rigid, const float gravity[3], const flo
     const double *r = dBodyGetRotation(body), *j = floater->mass.inertia;
     double local[3];
     for (int k = 0; k < 3; k++) {
-      momentum[k] += floater->mass.mass * v[k] + floater->owed[k];
+      momentum[k] += floater->mass.mass * v[k];
       *energy += floater->mass.mass * (0.5 * v[k] * v[k] - (double)gravity[k] * (at[k] - (double)origin[k]));
       local[k] = r[k] * w[0] + r[4 + k] * w[1] + r[8 + k] * w[2];
     }

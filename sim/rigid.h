@@ -14,6 +14,7 @@ typedef struct SimGiven {
   double angular[3]; ///< N m s
   double layer[21];  ///< kg, kg m, kg m²: the mass matrix (lower triangle, rows first) of the water next to the body, for
                      ///< the body's velocity and spin
+  double change[6];  ///< m/s, rad/s: what body and layer together got of it, by sim_rigid_step
 } SimGiven;
 
 /// A set of `count` obstacles, `defs`, which must stay; those that do not float are what floating ones run into. NULL: no
@@ -35,10 +36,9 @@ double sim_rigid_speed(const SimRigid *rigid, int32_t index, double reach);
 
 /// Move the floating bodies by dt. `given` by slot; `bodies` (count) say how the other obstacles move in this substep.
 /// false: no memory.
-bool sim_rigid_step(SimRigid *rigid, double dt, const float gravity[3], const SimGiven *given, const SimBody *bodies);
+bool sim_rigid_step(SimRigid *rigid, double dt, const float gravity[3], SimGiven *given, const SimBody *bodies);
 
-/// Sums over the floating bodies: kg m/s, with what the water gave that they have not taken up yet (see rigid.c); J,
-/// kinetic and potential, −m g·(x − origin).
+/// Sums over the floating bodies: kg m/s; J, kinetic and potential, −m g·(x − origin).
 void sim_rigid_measures(const SimRigid *rigid, const float gravity[3], const float origin[3], double momentum[3],
                         double *energy);
 
