@@ -10,6 +10,8 @@
 
 /// Share of its overlap with a wedged particle that a body is asked to take back in a substep.
 #define WEDGE 0.5f
+/// The clamp leaves a particle that is free to go at one clearance, to some thousandths.
+#define WEDGED 0.98f
 
 bool sim_reaction_create(SimReaction *reaction, const SimBoundary *boundary, const SimRigid *rigid,
                          double particle_mass) {
@@ -78,9 +80,10 @@ static int32_t clamp_share(const SimReaction *reaction, const float free[3], con
   if (wedge == 0 && memcmp(free, to, 3 * sizeof(float)) == 0) return -1;
   int32_t body = clamped_by(reaction->boundary, to, &gap, normal);
   if (body < 0) return -1;
-  float walls[3] = {free[0], free[1], free[2]}, missing = wedge * (reaction->boundary->clearance - gap);
+  float walls[3] = {free[0], free[1], free[2]}, clearance = reaction->boundary->clearance;
+  float missing = gap < WEDGED * clearance ? wedge * (clearance - gap) : 0;
   sim_boundary_clamp(&reaction->walls, free, walls);
-  for (int k = 0; k < 3; k++) shift[k] += to[k] - walls[k] + (missing > 0 ? missing * normal[k] : 0);
+  for (int k = 0; k < 3; k++) shift[k] += to[k] - walls[k] + missing * normal[k];
   return body;
 }
 
