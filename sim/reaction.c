@@ -19,8 +19,6 @@ bool sim_reaction_create(SimReaction *reaction, const SimBoundary *boundary, con
   reaction->boundary = boundary;
   reaction->rigid = rigid;
   reaction->particle_mass = particle_mass;
-  reaction->walls = *boundary;
-  reaction->walls.body_count = 0;
   sim_wall_share(&boundary->wall, boundary->clearance, &slope);
   reaction->inverse_slope = -1 / slope;
   reaction->given = sim_allocate((size_t)sim_rigid_floating(rigid) * sizeof(SimGiven));
@@ -53,47 +51,29 @@ void sim_reaction_clear(SimReaction *reaction) {
 
 // ---- Notes -----------------------------------------------------------------------------------------------------------
 
-// The floating body against which the clamp left a particle, −1: none. Where several bodies touch, the nearest one.
-static int32_t clamped_by(const SimBoundary *boundary, const float point[3], float *gap, float normal[3]) {
-  int32_t nearest = -1;
-  *gap = 1.01f * boundary->clearance;
-  for (int32_t b = 0; b < boundary->body_count; b++) {
-    const SimBody *body = &boundary->bodies[b];
-    float n[3], d2 = 0, reach = body->bound + *gap;
-    for (int k = 0; k < 3; k++) d2 += (point[k] - body->position[k]) * (point[k] - body->position[k]);
-    if (!(d2 < reach * reach)) continue;
-    float distance = sim_body_distance(body, point, n);
-    if (!(distance < *gap)) continue;
-    *gap = distance;
-    memcpy(normal, n, sizeof n);
-    nearest = b;
-  }
-  return nearest >= 0 && boundary->bodies[nearest].floats ? nearest : -1;
-}
-
 // What the clamp moved beyond what the container's walls alone would have. A particle that is wedged between a body and a
 // wall cannot go where the body wants it: the wall holds it. The body feels that all the same, once a substep
 // (`wedge`, otherwise 0); else it would sink into a wetted floor as if nothing were there.
-static int32_t clamp_share(const SimReaction *reaction, const float free[3], const float to[3], float wedge,
-                           float shift[3]) {
-  float gap, normal[3];
-  if (wedge == 0 && memcmp(free, to, 3 * sizeof(float)) == 0) return -1;
-  int32_t body = clamped_by(reaction->boundary, to, &gap, normal);
-  if (body < 0) return -1;
-  float walls[3] = {free[0], free[1], free[2]}, clearance = reaction->boundary->clearance;
-  float missing = gap < WEDGED * clearance ? wedge * (clearance - gap) : 0;
-  sim_boundary_clamp(&reaction->walls, free, walls);
+static void add_clamp(const SimReaction *reaction, int32_t body, const float free[3], const float to[3], float wedge,
+                      float shift[3]) {
+  float walls[3] = {free[0], free[1], free[2]}, normal[3] = {0, 0, 0}, missing = 0;
+  float clearance = reaction->boundary->clearance;
+  sim_boundary_into_container(reaction->boundary, clearance, walls);
+  if (wedge > 0) {
+    float gap = sim_body_distance(&reaction->boundary->bodies[body], to, normal);
+    missing = gap < WEDGED * clearance ? wedge * (clearance - gap) : 0;
+  }
   for (int k = 0; k < 3; k++) shift[k] += to[k] - walls[k] + missing * normal[k];
-  return body;
 }
 
 static void note(SimReaction *reaction, int32_t i, const float shift[3]) {
   for (int k = 0; k < 3; k++) reaction->shift[k][i] = shift[k];
 }
 
-void sim_reaction_predicted(SimReaction *reaction, int32_t i, const float free[3], const float to[3]) {
+void sim_reaction_predicted(SimReaction *reaction, int32_t i, int32_t clamped, const float free[3], const float to[3]) {
   float shift[3] = {0, 0, 0};
-  reaction->body[i] = clamp_share(reaction, free, to, WEDGE, shift);
+  if (clamped >= 0) add_clamp(reaction, clamped, free, to, WEDGE, shift);
+  reaction->body[i] = clamped;
   for (int k = 0; k < 3; k++) reaction->gradient[k][i] = 0;
   note(reaction, i, shift);
 }
@@ -106,12 +86,13 @@ void sim_reaction_solid(SimReaction *reaction, int32_t i, const SimSolid *solid)
   }
 }
 
-void sim_reaction_corrected(SimReaction *reaction, int32_t i, float lambda, const float free[3], const float to[3]) {
+void sim_reaction_corrected(SimReaction *reaction, int32_t i, float lambda, int32_t clamped, const float free[3],
+                            const float to[3]) {
   float shift[3] = {0, 0, 0};
   if (reaction->body[i] >= 0)
     for (int k = 0; k < 3; k++) shift[k] = lambda * reaction->gradient[k][i];
-  int32_t body = clamp_share(reaction, free, to, 0, shift);
-  if (reaction->body[i] < 0) reaction->body[i] = body;
+  if (clamped >= 0) add_clamp(reaction, clamped, free, to, 0, shift);
+  if (reaction->body[i] < 0) reaction->body[i] = clamped;
   note(reaction, i, shift);
 }
 

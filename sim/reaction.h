@@ -18,7 +18,6 @@
 
 typedef struct SimReaction {
   const SimBoundary *boundary;
-  SimBoundary walls;      ///< the boundary without its bodies
   const SimRigid *rigid;
   float inverse_slope;    ///< m: one over the steepness of a flat wall's share where the first layer of particles lies
   double particle_mass;   ///< kg
@@ -40,12 +39,13 @@ void sim_reaction_clear(SimReaction *reaction);
 
 // Called by the kernels, for particle i:
 
-/// The prediction wanted the particle at `free`, the clamp put it to `to`.
-void sim_reaction_predicted(SimReaction *reaction, int32_t i, const float free[3], const float to[3]);
+/// The prediction wanted the particle at `free`, the clamp put it to `to` and returned `clamped`.
+void sim_reaction_predicted(SimReaction *reaction, int32_t i, int32_t clamped, const float free[3], const float to[3]);
 /// What sim_boundary_solid said at the particle's place.
 void sim_reaction_solid(SimReaction *reaction, int32_t i, const SimSolid *solid);
-/// An iteration moved the particle by λ times the share's gradient (among others) to `free`, and the clamp to `to`.
-void sim_reaction_corrected(SimReaction *reaction, int32_t i, float lambda, const float free[3], const float to[3]);
+/// An iteration moved the particle by λ times the share's gradient (among others) to `free`, and the clamp to `to`, returning `clamped`.
+void sim_reaction_corrected(SimReaction *reaction, int32_t i, float lambda, int32_t clamped, const float free[3],
+                            const float to[3]);
 /// A body changed the particle's velocity by shift/dt (friction). Adds to the note; sim_reaction_collect follows.
 void sim_reaction_rubbed(SimReaction *reaction, int32_t i, const float shift[3]);
 
