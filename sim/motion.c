@@ -254,13 +254,17 @@ static void follow(const SimMover *mover, double dt, SimBody *body) {
   }
 }
 
+static float length3(const float v[3]) {
+  return sqrtf(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
+
 static void show(SimObstacle *obstacle, const SimPose *pose) {
   for (int k = 0; k < 3; k++) obstacle->position[k] = (float)pose->position[k];
   for (int k = 0; k < 4; k++) obstacle->rotation[k] = (float)pose->rotation[k];
 }
 
-void sim_motion_begin(SimWorld *world, double end) {
-  double dt = end - world->time;
+bool sim_motion_begin(SimWorld *world, double end) {
+  double dt = end - world->time, fastest = 0;
   for (int32_t b = 0; world->motion.movers && b < world->def.obstacle_count; b++) {
     const SimObstacleDef *def = &world->def.obstacles[b];
     SimMover *mover = &world->motion.movers[b];
@@ -274,8 +278,12 @@ void sim_motion_begin(SimWorld *world, double end) {
     if (def->motion == SIM_FLOATING)
       sim_rigid_predict(world->motion.rigid, b, dt, mover->now.position, mover->now.rotation);
     follow(mover, dt, body);
+    fastest = fmax(fastest, (double)(length3(body->velocity) + body->bound * length3(body->spin)));
   }
-  if (world->motion.rigid) sim_reaction_clear(&world->motion.reaction);
+  world->motion.clamp_speed = (float)fastest + sim_reaction_recovery(world->cubic.spacing);
+  if (!world->motion.rigid) return true;
+  sim_reaction_clear(&world->motion.reaction, (float)dt);
+  return sim_reaction_reserve(&world->motion.reaction, world->particles.count);
 }
 
 bool sim_motion_end(SimWorld *world, double end, SimError *error) {

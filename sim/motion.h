@@ -28,6 +28,7 @@ typedef struct SimMotionState {
   SimMover *movers;     ///< (obstacle_count); NULL where no obstacle moves
   SimPoseKey *keys;     ///< all scripts' keys, one after the other
   SimRigid *rigid;      ///< NULL where no obstacle floats
+  float clamp_speed;    ///< m/s, in this substep: of the fastest point of a body, and of what leaves an overlap
   SimReaction reaction; ///< unused where no obstacle floats
 } SimMotionState;
 
@@ -47,8 +48,8 @@ bool sim_motion_reset(SimWorld *world);
 /// or by `cfl` spacings a substep.
 double sim_motion_longest(const SimWorld *world, double longest);
 
-/// The start of a substep that lasts from the world's time until `end` (s).
-void sim_motion_begin(SimWorld *world, double end);
+/// The start of a substep that lasts from the world's time until `end` (s). false: no memory.
+bool sim_motion_begin(SimWorld *world, double end);
 /// What the water has given so far moves the floating bodies. false and *error: one is no longer finite.
 bool sim_motion_end(SimWorld *world, double end, SimError *error);
 void sim_motion_commit(SimWorld *world);

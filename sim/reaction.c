@@ -8,8 +8,6 @@
 #include "sim/memory.h"
 #include "sim/parallel.h"
 
-/// Share of its overlap with a wedged particle that a body is asked to take back in a substep.
-#define WEDGE 0.5f
 /// The clamp leaves a particle that is free to go at one clearance, to some thousandths.
 #define WEDGED 0.98f
 
@@ -45,34 +43,40 @@ bool sim_reaction_reserve(SimReaction *reaction, int32_t count) {
   return ok;
 }
 
-void sim_reaction_clear(SimReaction *reaction) {
+float sim_reaction_recovery(float spacing) {
+  return sqrtf(9.81f * spacing);
+}
+
+void sim_reaction_clear(SimReaction *reaction, float dt) {
+  reaction->most = dt * sim_reaction_recovery(2 * reaction->boundary->clearance);
   memset(reaction->given, 0, (size_t)sim_rigid_floating(reaction->rigid) * sizeof(SimGiven));
 }
 
 // ---- Notes -----------------------------------------------------------------------------------------------------------
 
 // What the clamp moved beyond what the container's walls alone would have. A particle that is wedged between a body and a
-// wall cannot go where the body wants it: the wall holds it. The body feels that all the same, once a substep
-// (`wedge`, otherwise 0); else it would sink into a wetted floor as if nothing were there.
-static void add_clamp(const SimReaction *reaction, int32_t body, const float free[3], const float to[3], float wedge,
-                      float shift[3]) {
+// wall cannot go where the body wants it: the wall holds it. The body feels that all the same, once a substep, by up to
+// `wedge` (m; otherwise 0); else it would sink into a wetted floor as if nothing were there.
+static void add_clamp(const SimReaction *reaction, int32_t body, float kept, const float free[3], const float to[3],
+                      float wedge, float shift[3]) {
   float walls[3] = {free[0], free[1], free[2]}, normal[3] = {0, 0, 0}, missing = 0;
   float clearance = reaction->boundary->clearance;
   sim_boundary_into_container(reaction->boundary, clearance, walls);
   if (wedge > 0) {
     float gap = sim_body_distance(&reaction->boundary->bodies[body], to, normal);
-    missing = gap < WEDGED * clearance ? wedge * (clearance - gap) : 0;
+    missing = gap < WEDGED * clearance ? fminf(clearance - gap, wedge) : 0;
   }
-  for (int k = 0; k < 3; k++) shift[k] += to[k] - walls[k] + missing * normal[k];
+  for (int k = 0; k < 3; k++) shift[k] += kept * (to[k] - walls[k]) + missing * normal[k];
 }
 
 static void note(SimReaction *reaction, int32_t i, const float shift[3]) {
   for (int k = 0; k < 3; k++) reaction->shift[k][i] = shift[k];
 }
 
-void sim_reaction_predicted(SimReaction *reaction, int32_t i, int32_t clamped, const float free[3], const float to[3]) {
+void sim_reaction_predicted(SimReaction *reaction, int32_t i, int32_t clamped, float kept, const float free[3],
+                            const float to[3]) {
   float shift[3] = {0, 0, 0};
-  if (clamped >= 0) add_clamp(reaction, clamped, free, to, WEDGE, shift);
+  if (clamped >= 0) add_clamp(reaction, clamped, kept, free, to, reaction->most, shift);
   reaction->body[i] = clamped;
   for (int k = 0; k < 3; k++) reaction->gradient[k][i] = 0;
   note(reaction, i, shift);
@@ -86,12 +90,12 @@ void sim_reaction_solid(SimReaction *reaction, int32_t i, const SimSolid *solid)
   }
 }
 
-void sim_reaction_corrected(SimReaction *reaction, int32_t i, float lambda, int32_t clamped, const float free[3],
-                            const float to[3]) {
+void sim_reaction_corrected(SimReaction *reaction, int32_t i, float lambda, int32_t clamped, float kept,
+                            const float free[3], const float to[3]) {
   float shift[3] = {0, 0, 0};
   if (reaction->body[i] >= 0)
     for (int k = 0; k < 3; k++) shift[k] = lambda * reaction->gradient[k][i];
-  if (clamped >= 0) add_clamp(reaction, clamped, free, to, 0, shift);
+  if (clamped >= 0) add_clamp(reaction, clamped, kept, free, to, 0, shift);
   if (reaction->body[i] < 0) reaction->body[i] = clamped;
   note(reaction, i, shift);
 }

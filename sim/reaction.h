@@ -19,6 +19,7 @@
 typedef struct SimReaction {
   const SimBoundary *boundary;
   const SimRigid *rigid;
+  float most;             ///< m, that a wedged particle moves a body's layer in this substep
   float inverse_slope;    ///< m: one over the steepness of a flat wall's share where the first layer of particles lies
   double particle_mass;   ///< kg
   int32_t *body;          ///< (capacity): obstacle that the note is for, −1: no note; by the kernels
@@ -34,18 +35,24 @@ void sim_reaction_destroy(SimReaction *reaction);
 /// Make room for the notes of `count` particles. false: no memory.
 bool sim_reaction_reserve(SimReaction *reaction, int32_t count);
 
-/// Nothing given so far in this substep.
-void sim_reaction_clear(SimReaction *reaction);
+/// m/s: how fast things that overlap part, what a fall of half a spacing would give.
+float sim_reaction_recovery(float spacing);
+
+/// Nothing given so far in this substep of dt (s).
+void sim_reaction_clear(SimReaction *reaction, float dt);
 
 // Called by the kernels, for particle i:
 
-/// The prediction wanted the particle at `free`, the clamp put it to `to` and returned `clamped`.
-void sim_reaction_predicted(SimReaction *reaction, int32_t i, int32_t clamped, const float free[3], const float to[3]);
+/// The prediction wanted the particle at `free`, the clamp put it to `to` and returned `clamped`; the share `kept` of that
+/// changed its velocity.
+void sim_reaction_predicted(SimReaction *reaction, int32_t i, int32_t clamped, float kept, const float free[3],
+                            const float to[3]);
 /// What sim_boundary_solid said at the particle's place.
 void sim_reaction_solid(SimReaction *reaction, int32_t i, const SimSolid *solid);
-/// An iteration moved the particle by λ times the share's gradient (among others) to `free`, and the clamp to `to`, returning `clamped`.
-void sim_reaction_corrected(SimReaction *reaction, int32_t i, float lambda, int32_t clamped, const float free[3],
-                            const float to[3]);
+/// An iteration moved the particle by λ times the share's gradient (among others) to `free`, and the clamp to `to`, returning `clamped`,
+/// of which the share `kept` changed its velocity.
+void sim_reaction_corrected(SimReaction *reaction, int32_t i, float lambda, int32_t clamped, float kept,
+                            const float free[3], const float to[3]);
 /// A body changed the particle's velocity by shift/dt (friction). Adds to the note; sim_reaction_collect follows.
 void sim_reaction_rubbed(SimReaction *reaction, int32_t i, const float shift[3]);
 

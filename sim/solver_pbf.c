@@ -23,6 +23,19 @@ static void add_push(const SimPush *push, const float point[3], float accelerati
   for (int k = 0; k < 3; k++) acceleration[k] += share * push->acceleration[k];
 }
 
+// How much of what the clamp moved a particle becomes velocity. A particle that is stopped, or pushed by a body, gets all of
+// it: that is no more than its own way and the body's. One that was squeezed out from between a body and a wall goes a way
+// that has nothing to do with dt; as a velocity it would be without bound where dt is small.
+static float clamp_kept(const SimStep *step, const float from[3], const float free[3], const float to[3]) {
+  float own = 0, moved = 0;
+  for (int k = 0; k < 3; k++) {
+    own += (free[k] - from[k]) * (free[k] - from[k]);
+    moved += (to[k] - free[k]) * (to[k] - free[k]);
+  }
+  float most = sqrtf(own) + step->dt * step->clamp_speed;
+  return moved > most * most ? most / sqrtf(moved) : 1;
+}
+
 static void predict_kernel(int32_t begin, int32_t end, const void *context) {
   const SimStep *step = context;
   SimSorted *now = &step->particles->now;
@@ -37,10 +50,11 @@ static void predict_kernel(int32_t begin, int32_t end, const void *context) {
     }
     const float free[3] = {to[0], to[1], to[2]};
     int32_t clamped = sim_boundary_clamp(step->boundary, NULL, from, to);
-    if (step->reaction) sim_reaction_predicted(step->reaction, i, clamped, free, to);
+    float kept = clamp_kept(step, from, free, to);
+    if (step->reaction) sim_reaction_predicted(step->reaction, i, clamped, kept, free, to);
     for (int k = 0; k < 3; k++) {
       now->predicted[k][i] = to[k];
-      if (to[k] != free[k]) now->next_velocity[k][i] += (to[k] - free[k]) * step->inverse_dt;
+      if (to[k] != free[k]) now->next_velocity[k][i] += kept * (to[k] - free[k]) * step->inverse_dt;
     }
   }
 }
@@ -217,10 +231,11 @@ static void correct_kernel(int32_t begin, int32_t end, const void *context, doub
       to[k] = free[k] = p->now.predicted[k][i] + move[k];
     }
     int32_t clamped = sim_boundary_clamp(step->boundary, NULL, from, to);
-    if (step->reaction) sim_reaction_corrected(step->reaction, i, p->lambda[i], clamped, free, to);
+    float kept = clamp_kept(step, from, free, to);
+    if (step->reaction) sim_reaction_corrected(step->reaction, i, p->lambda[i], clamped, kept, free, to);
     for (int k = 0; k < 3; k++) {
+      p->now.next_velocity[k][i] += (move[k] + kept * (to[k] - free[k])) * step->inverse_dt;
       if (to[k] != free[k]) move[k] = to[k] - p->now.predicted[k][i];
-      p->now.next_velocity[k][i] += move[k] * step->inverse_dt;
       d2 += move[k] * move[k];
       p->scratch[k][i] = to[k];
     }

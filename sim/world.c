@@ -203,6 +203,7 @@ static SimStep make_step(SimWorld *world, float dt) {
                   .boundary = &world->boundary,
                   .particles = &world->particles,
                   .neighbours = &world->neighbours,
+                  .clamp_speed = world->motion.clamp_speed,
                   .reaction = world->motion.rigid ? &world->motion.reaction : NULL};
   memcpy(step.gravity, world->gravity, sizeof step.gravity);
   return step;
@@ -313,12 +314,10 @@ static void commit(SimWorld *world, double end) {
 
 static bool substep(SimWorld *world, double end, SimError *error) {
   double since = sim_milliseconds();
+  if (!sim_motion_begin(world, end)) return sim_fail(error, "out of memory");
   SimStep step = make_step(world, (float)(end - world->time));
   world->settled = false;
 
-  if (step.reaction && !sim_reaction_reserve(step.reaction, world->particles.count))
-    return sim_fail(error, "out of memory");
-  sim_motion_begin(world, end);
   sim_pbf_predict(&step);
   collect_reaction(world, &step, false);
   if (!check(world, SIM_STAGE_predict, error)) return false;
