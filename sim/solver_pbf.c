@@ -23,17 +23,21 @@ static void add_push(const SimPush *push, const float point[3], float accelerati
   for (int k = 0; k < 3; k++) acceleration[k] += share * push->acceleration[k];
 }
 
-// How much of what the clamp moved a particle becomes velocity. A particle that is stopped, or pushed by a body, gets all of
-// it: that is no more than its own way and the body's. One that was squeezed out from between a body and a wall goes a way
-// that has nothing to do with dt; as a velocity it would be without bound where dt is small.
-static float clamp_kept(const SimStep *step, const float from[3], const float free[3], const float to[3]) {
-  float own = 0, moved = 0;
+// How much of a move b by the clamp becomes velocity, v + kept b/dt. A particle that is stopped, or taken along by a body,
+// gets all of it. One that is squeezed out from between a body and a wall goes a way that has nothing to do with dt; as a
+// velocity that would be without bound where dt is small, and shorten dt further. So the clamp makes no particle faster than
+// it was or, if that is more, than step->clamp_speed.
+static float clamp_kept(const SimStep *step, const float v[3], const float free[3], const float to[3]) {
+  float vv = 0, vb = 0, bb = 0;
   for (int k = 0; k < 3; k++) {
-    own += (free[k] - from[k]) * (free[k] - from[k]);
-    moved += (to[k] - free[k]) * (to[k] - free[k]);
+    float b = (to[k] - free[k]) * step->inverse_dt;
+    vv += v[k] * v[k];
+    vb += v[k] * b;
+    bb += b * b;
   }
-  float most = sqrtf(own) + step->dt * step->clamp_speed;
-  return moved > most * most ? most / sqrtf(moved) : 1;
+  float most = fmaxf(vv, step->clamp_speed * step->clamp_speed);
+  if (!(vv + 2 * vb + bb > most)) return 1;
+  return fminf(1, fmaxf(0, (sqrtf(fmaxf(0, vb * vb + bb * (most - vv))) - vb) / bb)); // |v + kept b|² = most
 }
 
 static void predict_kernel(int32_t begin, int32_t end, const void *context) {
@@ -50,7 +54,8 @@ static void predict_kernel(int32_t begin, int32_t end, const void *context) {
     }
     const float free[3] = {to[0], to[1], to[2]};
     int32_t clamped = sim_boundary_clamp(step->boundary, NULL, from, to);
-    float kept = clamp_kept(step, from, free, to);
+    const float v[3] = {now->next_velocity[0][i], now->next_velocity[1][i], now->next_velocity[2][i]};
+    float kept = clamp_kept(step, v, free, to);
     if (step->reaction) sim_reaction_predicted(step->reaction, i, clamped, kept, free, to);
     for (int k = 0; k < 3; k++) {
       now->predicted[k][i] = to[k];
@@ -224,17 +229,18 @@ static void correct_kernel(int32_t begin, int32_t end, const void *context, doub
   const SimStep *step = context;
   SimParticles *p = step->particles;
   for (int32_t i = begin; i < end; i++) {
-    float from[3], free[3], to[3], move[3], d2 = 0;
+    float from[3], free[3], to[3], move[3], v[3], d2 = 0;
     correction(step, i, move);
     for (int k = 0; k < 3; k++) {
       from[k] = p->now.position[k][i];
       to[k] = free[k] = p->now.predicted[k][i] + move[k];
+      v[k] = p->now.next_velocity[k][i] + move[k] * step->inverse_dt;
     }
     int32_t clamped = sim_boundary_clamp(step->boundary, NULL, from, to);
-    float kept = clamp_kept(step, from, free, to);
+    float kept = clamp_kept(step, v, free, to);
     if (step->reaction) sim_reaction_corrected(step->reaction, i, p->lambda[i], clamped, kept, free, to);
     for (int k = 0; k < 3; k++) {
-      p->now.next_velocity[k][i] += (move[k] + kept * (to[k] - free[k])) * step->inverse_dt;
+      p->now.next_velocity[k][i] = v[k] + kept * (to[k] - free[k]) * step->inverse_dt;
       if (to[k] != free[k]) move[k] = to[k] - p->now.predicted[k][i];
       d2 += move[k] * move[k];
       p->scratch[k][i] = to[k];

@@ -37,7 +37,7 @@ typedef struct SimStep {
   const SimBoundary *boundary;
   SimParticles *particles;
   SimNeighbours *neighbours;
-  float clamp_speed;          ///< m/s, that the clamp may give to a particle beyond its own
+  float clamp_speed;          ///< m/s, to which the clamp may bring a particle that was slower
   SimReaction *reaction;      ///< NULL where no body floats
 } SimStep;
 
