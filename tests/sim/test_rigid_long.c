@@ -25,7 +25,6 @@ static Rest float_body(SimShape shape, float size, float density, float y, const
   SimWorldDef def = test_def((const float[3]){1.2f, 1.5f, 1.2f}, &block, (const float[3]){1.2f, 0.5f, 1.2f});
   def.obstacles = &body;
   def.obstacle_count = 1;
-  def.threads = 2;
   SimWorld *world = test_create(&def);
   SimFrameBuffer *buffer = sim_frame_buffer_create();
   double volume = sim_world_counts(world).particles * pow(0.05, 3), mean = 0, speed = 0;
