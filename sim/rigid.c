@@ -52,6 +52,10 @@
 #define CONTACT_RECOVERY 0.2
 /// Overlap that contacts leave, in spacings, so that they are not lost and found from step to step.
 #define CONTACT_LAYER 0.01
+/// Contacts are only found once bodies overlap: in one step none goes farther than this, in spacings, by taking several
+/// steps to a substep of the water; but not more than MAX_STEPS.
+#define MAX_OVERLAP 0.1
+#define MAX_STEPS 16
 /// Softness of a contact against that of the lightest body: far too stiff to be seen, enough to keep redundant contacts
 /// (a box stands on three of its four corners) solvable.
 #define CONTACT_SOFTNESS 1e-6
@@ -61,6 +65,7 @@ typedef struct Floater {
   int32_t index;       ///< of its obstacle
   SimMass mass;
   double ahead[3];     ///< m, the centre of mass at the predicted pose
+  double force[6];     ///< N, N m: of water and gravity in this substep
 } Floater;
 
 struct SimRigid {
@@ -381,8 +386,9 @@ static void solve6(double a[6][6], double b[6]) {
   }
 }
 
-// Take up what the water gave, as derived above; what remains for the body itself becomes ODE's force and torque.
-static void take_up(const SimRigid *rigid, const Floater *floater, double dt, const float gravity[3], SimGiven *given) {
+// Take up what the water gave, as derived above; what remains for the body itself is its force and torque.
+static void take_up(const SimRigid *rigid, const Floater *floater, double dt, const float gravity[3], SimGiven *given,
+                    double force[6]) {
   dBodyID body = rigid->bodies[floater->index];
   double total[6], a[6][6];
   for (int k = 0; k < 3; k++) {
@@ -399,8 +405,7 @@ static void take_up(const SimRigid *rigid, const Floater *floater, double dt, co
     }
     total[row] /= dt;
   }
-  dBodySetForce(body, total[0], total[1], total[2]);
-  dBodySetTorque(body, total[3], total[4], total[5]);
+  memcpy(force, total, sizeof total);
 }
 
 static void join(SimRigid *rigid, dBodyID a, dBodyID b, const dContactGeom *geom, int count) {
@@ -451,10 +456,14 @@ static void move_others(SimRigid *rigid, const SimBody *bodies) {
   }
 }
 
-bool sim_rigid_step(SimRigid *rigid, double dt, const float gravity[3], SimGiven *given, const SimBody *bodies) {
-  open_thread();
-  move_others(rigid, bodies);
-  for (int32_t s = 0; s < rigid->floating; s++) take_up(rigid, &rigid->floaters[s], dt, gravity, &given[s]);
+static bool step_once(SimRigid *rigid, double dt) {
+  for (int32_t s = 0; s < rigid->floating; s++) {
+    const Floater *floater = &rigid->floaters[s];
+    dBodyID body = rigid->bodies[floater->index];
+    const double *f = floater->force;
+    dBodySetForce(body, f[0], f[1], f[2]);
+    dBodySetTorque(body, f[3], f[4], f[5]);
+  }
   if (rigid->meshes) pthread_mutex_lock(&lock);
   dSpaceCollide(rigid->space, rigid, near_pair);
   for (int32_t s = 0; s < rigid->floating; s++) meet_walls(rigid, rigid->bodies[rigid->floaters[s].index]);
@@ -462,6 +471,21 @@ bool sim_rigid_step(SimRigid *rigid, double dt, const float gravity[3], SimGiven
   dWorldSetCFM(rigid->world, CONTACT_SOFTNESS * dt / rigid->lightest);
   bool stepped = dWorldStep(rigid->world, dt);
   dJointGroupEmpty(rigid->contacts);
+  return stepped;
+}
+
+bool sim_rigid_step(SimRigid *rigid, double dt, const float gravity[3], SimGiven *given, const SimBody *bodies) {
+  open_thread();
+  move_others(rigid, bodies);
+  double fastest = 0;
+  for (int32_t s = 0; s < rigid->floating; s++) {
+    Floater *floater = &rigid->floaters[s];
+    take_up(rigid, floater, dt, gravity, &given[s], floater->force);
+    fastest = fmax(fastest, sim_rigid_speed(rigid, floater->index, (double)bodies[floater->index].bound));
+  }
+  double steps = fmin(MAX_STEPS, fmax(1, ceil(fastest * dt / (MAX_OVERLAP * rigid->spacing))));
+  bool stepped = true;
+  for (int k = 0; k < (int)steps && stepped; k++) stepped = step_once(rigid, dt / steps);
   return stepped;
 }
 
