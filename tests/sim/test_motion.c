@@ -196,10 +196,27 @@ static void dragging_keeps_its_speed(void **state) {
   }
   assert_memory_equal(obstacle_now(world).position, target, sizeof target);
   assert_angle_about_y(world, 0);
-  advance(world, 1.0 / 64); // at rest it asks for no short steps; they grow by a half each
+  sim_world_destroy(world);
+}
+
+static int64_t substeps_of(SimWorld *world, double duration) {
   int64_t before = sim_world_counts(world).substeps;
-  advance(world, 1.0 / 64);
-  assert_int_equal(sim_world_counts(world).substeps, before + 1);
+  advance(world, duration);
+  return sim_world_counts(world).substeps - before;
+}
+
+// At 12.8 m/s it asks for eight substeps of half a spacing in 1/64 s; with its target reached, for none (those left grow by a half).
+static void dragging_asks_for_substeps(void **state) {
+  (void)state;
+  SimObstacleDef def = draggable(12.8f);
+  SimWorld *world = world_of(&def);
+  advance(world, 1.0 / 8);
+  const float target[3] = {2, 1, 1};
+  assert_true(sim_world_drag(world, 0, target, NULL));
+  for (int f = 0; f < 4; f++) assert_int_equal(substeps_of(world, 1.0 / 64), 8);
+  advance(world, 1.0 / 8);
+  assert_memory_equal(obstacle_now(world).position, target, sizeof target);
+  assert_true(substeps_of(world, 1.0 / 64) <= 2);
   sim_world_destroy(world);
 }
 
@@ -356,7 +373,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(keys_are_followed),         cmocka_unit_test(keys_repeat),
       cmocka_unit_test(stroke_is_a_cosine),        cmocka_unit_test(steps_do_not_matter),
-      cmocka_unit_test(substeps_follow_the_body),  cmocka_unit_test(dragging_keeps_its_speed),
+      cmocka_unit_test(substeps_follow_the_body),  cmocka_unit_test(dragging_keeps_its_speed), cmocka_unit_test(dragging_asks_for_substeps),
       cmocka_unit_test(dragging_bounds_the_corners), cmocka_unit_test(targets_are_checked),
       cmocka_unit_test(paddle_sweeps_all_water),   cmocka_unit_test(impossible_motions_are_named)};
   return cmocka_run_group_tests(tests, NULL, NULL);
