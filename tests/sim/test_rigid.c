@@ -2,6 +2,7 @@
 #include <pthread.h>
 
 #include "sim/rigid.h"
+#include "sim/world.h"
 #include "sim_test.h"
 
 #define PI 3.14159265358979323846
@@ -316,6 +317,26 @@ static void same_bytes_for_any_threads(void **state) {
   }
 }
 
+static void same_bytes_on_every_instruction_set(void **state) {
+  (void)state;
+  SimObstacleDef bodies[4];
+  crowd(bodies);
+  SimWorldDef def = pool_with(bodies, 4);
+  uint64_t expected = 0;
+  static const char *const names[4] = {"scalar", "sse2", "avx2", "avx512"};
+  for (int k = 0; k < 4; k++) {
+    const SimWide *found = sim_wide_named(names[k]);
+    if (!found) continue;
+    SimWorld *world = test_create(&def);
+    world->wide = found;
+    test_advance(world, 15);
+    uint64_t hash = hash_of(world);
+    if (k == 0) expected = hash;
+    if (hash != expected) fail_msg("%s gives other bytes than one lane", names[k]);
+    sim_world_destroy(world);
+  }
+}
+
 static void reset_gives_the_same_bytes(void **state) {
   (void)state;
   SimObstacleDef bodies[4];
@@ -388,6 +409,7 @@ static void heavy_seas(void **state) {
     test_advance(world, 1);
     const SimFrame *frame = test_frame(world, 0, buffer);
     test_inside_container(frame);
+    test_outside_obstacles(frame);
     for (int b = 0; b < 3; b++)
       for (int k = 0; k < 3; k++) {
         float x = frame->obstacles[b].position[k];
@@ -405,7 +427,7 @@ int main(void) {
       cmocka_unit_test(lands_on_another),      cmocka_unit_test(is_pushed_by_a_hand),
       cmocka_unit_test(odd_bodies_fall_straight), cmocka_unit_test(a_glass_holds_its_bodies),
       cmocka_unit_test(momentum_is_kept),      cmocka_unit_test(same_bytes_for_any_threads),
-      cmocka_unit_test(reset_gives_the_same_bytes), cmocka_unit_test(worlds_are_independent),
+      cmocka_unit_test(same_bytes_on_every_instruction_set), cmocka_unit_test(reset_gives_the_same_bytes), cmocka_unit_test(worlds_are_independent),
       cmocka_unit_test(heavy_seas)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
