@@ -128,7 +128,8 @@ static void a_block_falls_from_high_up(void **state) {
 }
 
 // A paddle as wide as the pool, 0.3 m deep, 1 s a stroke of 0.06 m. Piston theory (Dean & Dalrymple, Water Wave Mechanics for
-// Engineers and Scientists, 1991, Eq. 6.25): wave height over stroke is 2 (cosh 2kh − 1)/(sinh 2kh + 2kh).
+// Engineers and Scientists, 1991, Eq. 6.25): wave height over stroke is 2 (cosh 2kh − 1)/(sinh 2kh + 2kh), beyond the local
+// disturbance (e^−3 at 0.35 m); farther away the wave has lost height.
 static void a_paddle_makes_waves(void **state) {
   (void)state;
   SimObstacleDef paddle = sim_default_obstacle_def();
@@ -151,7 +152,7 @@ static void a_paddle_makes_waves(void **state) {
     test_inside_container(frame);
     test_outside_obstacles(frame);
     double volume = 0;
-    for (int32_t i = 0; i < frame->count; i++) volume += fabsf(frame->position[3 * i] - 1.2f) < 0.06f ? pow(0.03, 3) : 0;
+    for (int32_t i = 0; i < frame->count; i++) volume += fabsf(frame->position[3 * i] - 0.5f) < 0.06f ? pow(0.03, 3) : 0;
     if (f < 120 || f > 240) continue; // before waves come back from the far end
     low = fmin(low, volume / (0.12 * 0.24));
     high = fmax(high, volume / (0.12 * 0.24));
@@ -160,7 +161,7 @@ static void a_paddle_makes_waves(void **state) {
   for (int n = 0; n < 50; n++) k = 0.5 * (k + 4 * 9.8696 / 9.81 / tanh(k * h)); // ω² = g k tanh kh
   double theory = 0.06 * 2 * (cosh(2 * k * h) - 1) / (sinh(2 * k * h) + 2 * k * h);
   print_message("wave of %.4f m, theory %.4f m\n", high - low, theory);
-  if (fabs(high - low - theory) > 0.25 * theory) fail_msg("wave of %g m, theory %g m", high - low, theory);
+  if (fabs(high - low - theory) > 0.15 * theory) fail_msg("wave of %g m, theory %g m", high - low, theory);
   sim_frame_buffer_destroy(buffer);
   sim_world_destroy(world);
 }
