@@ -31,8 +31,9 @@ bool sim_particles_reserve(SimParticles *particles, int32_t capacity) {
   size_t n = padded(capacity);
   for (int32_t k = 0; k < arrays; k++)
     if (!sim_reserve_keep(list[k], n, sizeof(float))) return false;
-  if (!sim_reserve(&particles->spare, n, sizeof(float)) ||
-      !sim_reserve((void **)&particles->first, 4 * n, sizeof(float)) ||
+  for (int k = 0; k < SIM_SPARES; k++)
+    if (!sim_reserve(&particles->spare[k], n, sizeof(float))) return false;
+  if (!sim_reserve((void **)&particles->first, 4 * n, sizeof(float)) ||
       !sim_reserve((void **)&particles->second, 4 * n, sizeof(float)) ||
       !sim_reserve_keep((void **)&particles->density, n, sizeof(float)) ||
       !sim_reserve((void **)&particles->solid, 4 * n, sizeof(float)) ||
@@ -46,7 +47,7 @@ void sim_particles_free(SimParticles *particles) {
   void **list[SIM_SORTED_ARRAYS];
   int32_t arrays = sim_particles_list(&particles->now, true, list);
   for (int32_t k = 0; k < arrays; k++) sim_release(*list[k]);
-  sim_release(particles->spare);
+  for (int k = 0; k < SIM_SPARES; k++) sim_release(particles->spare[k]);
   sim_release(particles->first);
   sim_release(particles->second);
   sim_release(particles->density);
@@ -122,12 +123,16 @@ bool sim_particles_sort(SimParticles *particles, SimCellSort *sort, float cell_s
 
   void **list[SIM_SORTED_ARRAYS];
   int32_t arrays = sim_particles_list(&particles->now, particles->coloured, list);
-  for (int32_t k = 0; k < arrays; k++) {
-    const void *source = *list[k];
-    sim_grid_gather(sort, particles->count, threads, 1, &source, &particles->spare);
-    void *sorted = particles->spare;
-    particles->spare = *list[k];
-    *list[k] = sorted;
+  for (int32_t k = 0; k < arrays; k += SIM_SPARES) {
+    int32_t moved = arrays - k < SIM_SPARES ? arrays - k : SIM_SPARES;
+    const void *source[SIM_SPARES];
+    for (int32_t a = 0; a < moved; a++) source[a] = *list[k + a];
+    sim_grid_gather(sort, particles->count, threads, moved, source, particles->spare);
+    for (int32_t a = 0; a < moved; a++) {
+      void *sorted = particles->spare[a];
+      particles->spare[a] = *list[k + a];
+      *list[k + a] = sorted;
+    }
   }
   return true;
 }

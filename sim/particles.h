@@ -24,11 +24,14 @@ typedef struct SimSorted {
   uint32_t *id;            ///< unique
 } SimSorted;
 
+/// Arrays that the sort moves at a time.
+#define SIM_SPARES 3
+
 typedef struct SimParticles {
   int32_t count, capacity;
   bool coloured;           ///< colours are held and follow the particles
   SimSorted now;
-  void *spare;             ///< (count) words: the sort moves an array into it and swaps the two
+  void *spare[SIM_SPARES]; ///< (count) words each: the sort moves arrays into them and swaps them
   // Work arrays in the present order.
   float *first, *second;   ///< (count, 4): x, y, z of the predicted position, m, and a number that the stages name
   float *density;          ///< share of the rest density in a settled state; pbf keeps inherited compression here meanwhile

@@ -34,6 +34,7 @@ typedef struct SimStep {
   float omega;                ///< ω, damping of the Jacobi iteration
   float relaxation;           ///< 1/m², ε
   float tensile;              ///< m², k
+  float wall_answer;          ///< κ, how much of a particle's pressure a wall answers with
   float warm;                 ///< s², turns `pressure` into the first λ
   bool stabilise;             ///< the corrections of this iteration move particles without changing their velocity
   bool measure;               ///< only measure the present state: nothing is corrected

@@ -122,7 +122,7 @@ void WIDE(sim_pbf_correct)(int32_t begin, int32_t end, const void *context, doub
   const SimStep *step = context;
   const SimNeighbours *lists = step->neighbours;
   SimParticles *p = step->particles;
-  SimF zero = sim_f(0), most = zero, all = zero;
+  SimF zero = sim_f(0), most = zero, all = zero, wall = sim_f(step->wall_answer);
   for (int32_t i = begin; i < end; i += SIM_LANES) {
     const int32_t chunk = i / SIM_CHUNK;
     const uint32_t *index = lists->index + (size_t)lists->start[chunk] * SIM_CHUNK + i % SIM_CHUNK;
@@ -135,7 +135,7 @@ void WIDE(sim_pbf_correct)(int32_t begin, int32_t end, const void *context, doub
     if (p->near[chunk]) {
       SimF solid[4];
       sim_load4(p->solid + 4 * (size_t)i, solid);
-      for (int k = 0; k < 3; k++) move[k] = move[k] + own[3] * solid[k];
+      for (int k = 0; k < 3; k++) move[k] = move[k] + wall * own[3] * solid[k];
     }
     for (int k = 0; k < 3; k++) to[k] = own[k] + move[k];
     SimF gain[3] = {move[0], move[1], move[2]};

@@ -31,9 +31,7 @@ static inline void sim_store(float *p, SimF a) { _mm512_storeu_ps(p, a); }
 static inline SimF sim_sqrt(SimF a) { return _mm512_sqrt_ps(a); }
 static inline SimF sim_max(SimF a, SimF b) { return _mm512_max_ps(a, b); }
 static inline SimF sim_min(SimF a, SimF b) { return _mm512_min_ps(a, b); }
-/// Bit k is set where a < b in lane k.
-static inline uint32_t sim_less(SimF a, SimF b) { return _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ); }
-/// a where a < b … in general: chosen where x < y, other elsewhere.
+/// `chosen` where x < y, `other` elsewhere.
 static inline SimF sim_select_less(SimF x, SimF y, SimF chosen, SimF other) {
   return _mm512_mask_blend_ps(_mm512_cmp_ps_mask(x, y, _CMP_LT_OQ), other, chosen);
 }
@@ -80,11 +78,17 @@ static inline void sim_store4(float *to, SimF x, SimF y, SimF z, SimF w) {
   sim_store(to + 32, _mm512_shuffle_f32x4(c, d, 0x88));
   sim_store(to + 48, _mm512_shuffle_f32x4(c, d, 0xdd));
 }
-/// Write first + k for every set bit k of the mask to `to`, in order; may write up to SIM_LANES values. How many.
-static inline uint32_t sim_compress(uint32_t *to, uint32_t first, uint32_t mask) {
+/// Write first + k for every lane k.
+static inline void sim_count_up(uint32_t *to, uint32_t first) {
   const __m512i steps = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
-  __m512i index = _mm512_add_epi32(_mm512_set1_epi32((int)first), steps);
-  _mm512_storeu_si512(to, _mm512_maskz_compress_epi32((__mmask16)mask, index));
+  _mm512_storeu_si512(to, _mm512_add_epi32(_mm512_set1_epi32((int)first), steps));
+}
+/// Pack those of the SIM_LANES numbers where a < b, except `but`, together in order; writes SIM_LANES numbers. How many.
+static inline uint32_t sim_pack_less(uint32_t *to, const uint32_t *from, SimF a, SimF b, uint32_t but) {
+  __m512i number = _mm512_loadu_si512(from);
+  __mmask16 other = _mm512_cmpneq_epi32_mask(number, _mm512_set1_epi32((int)but));
+  __mmask16 mask = _mm512_mask_cmp_ps_mask(other, a, b, _CMP_LT_OQ);
+  _mm512_storeu_si512(to, _mm512_maskz_compress_epi32(mask, number));
   return (uint32_t)__builtin_popcount(mask);
 }
 
@@ -99,9 +103,6 @@ static inline void sim_store(float *p, SimF a) { _mm256_storeu_ps(p, a); }
 static inline SimF sim_sqrt(SimF a) { return _mm256_sqrt_ps(a); }
 static inline SimF sim_max(SimF a, SimF b) { return _mm256_max_ps(a, b); }
 static inline SimF sim_min(SimF a, SimF b) { return _mm256_min_ps(a, b); }
-static inline uint32_t sim_less(SimF a, SimF b) {
-  return (uint32_t)_mm256_movemask_ps(_mm256_cmp_ps(a, b, _CMP_LT_OQ));
-}
 static inline SimF sim_select_less(SimF x, SimF y, SimF chosen, SimF other) {
   return _mm256_blendv_ps(other, chosen, _mm256_cmp_ps(x, y, _CMP_LT_OQ));
 }
@@ -136,12 +137,18 @@ static inline void sim_store4(float *to, SimF x, SimF y, SimF z, SimF w) {
   sim_store(to + 16, _mm256_permute2f128_ps(t[0], t[1], 0x31));
   sim_store(to + 24, _mm256_permute2f128_ps(t[2], t[3], 0x31));
 }
-static inline uint32_t sim_compress(uint32_t *to, uint32_t first, uint32_t mask) {
+static inline void sim_count_up(uint32_t *to, uint32_t first) {
+  __m256i steps = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
+  _mm256_storeu_si256((__m256i *)to, _mm256_add_epi32(_mm256_set1_epi32((int)first), steps));
+}
+static inline uint32_t sim_pack_less(uint32_t *to, const uint32_t *from, SimF a, SimF b, uint32_t but) {
+  __m256i number = _mm256_loadu_si256((const __m256i *)from);
+  __m256 same = _mm256_castsi256_ps(_mm256_cmpeq_epi32(number, _mm256_set1_epi32((int)but)));
+  uint32_t mask = (uint32_t)_mm256_movemask_ps(_mm256_andnot_ps(same, _mm256_cmp_ps(a, b, _CMP_LT_OQ)));
   // Where the set bits are, eight bits each: pdep spreads the mask, pext packs the numbers of its lanes.
-  uint64_t spread = _pdep_u64(mask, 0x0101010101010101u) * 0xff;
-  uint64_t lanes = _pext_u64(0x0706050403020100u, spread);
-  __m256i index = _mm256_cvtepu8_epi32(_mm_cvtsi64_si128((long long)lanes));
-  _mm256_storeu_si256((__m256i *)to, _mm256_add_epi32(index, _mm256_set1_epi32((int)first)));
+  uint64_t lanes = _pext_u64(0x0706050403020100u, _pdep_u64(mask, 0x0101010101010101u) * 0xff);
+  __m256i order = _mm256_cvtepu8_epi32(_mm_cvtsi64_si128((long long)lanes));
+  _mm256_storeu_si256((__m256i *)to, _mm256_permutevar8x32_epi32(number, order));
   return (uint32_t)__builtin_popcount(mask);
 }
 
@@ -156,7 +163,6 @@ static inline void sim_store(float *p, SimF a) { _mm_storeu_ps(p, a); }
 static inline SimF sim_sqrt(SimF a) { return _mm_sqrt_ps(a); }
 static inline SimF sim_max(SimF a, SimF b) { return _mm_max_ps(a, b); }
 static inline SimF sim_min(SimF a, SimF b) { return _mm_min_ps(a, b); }
-static inline uint32_t sim_less(SimF a, SimF b) { return (uint32_t)_mm_movemask_ps(_mm_cmplt_ps(a, b)); }
 static inline SimF sim_select_less(SimF x, SimF y, SimF chosen, SimF other) {
   __m128 less = _mm_cmplt_ps(x, y);
   return _mm_or_ps(_mm_and_ps(less, chosen), _mm_andnot_ps(less, other));
@@ -177,11 +183,14 @@ static inline void sim_store4(float *to, SimF x, SimF y, SimF z, SimF w) {
   sim_transpose4(x, y, z, w, t);
   for (int k = 0; k < 4; k++) sim_store(to + 4 * k, t[k]);
 }
-static inline uint32_t sim_compress(uint32_t *to, uint32_t first, uint32_t mask) {
-  uint32_t count = 0;
+static inline void sim_count_up(uint32_t *to, uint32_t first) {
+  for (uint32_t k = 0; k < 4; k++) to[k] = first + k;
+}
+static inline uint32_t sim_pack_less(uint32_t *to, const uint32_t *from, SimF a, SimF b, uint32_t but) {
+  uint32_t mask = (uint32_t)_mm_movemask_ps(_mm_cmplt_ps(a, b)), count = 0;
   for (uint32_t k = 0; k < 4; k++) {
-    to[count] = first + k; // overwritten unless it is counted
-    count += mask >> k & 1;
+    to[count] = from[k]; // overwritten unless it is counted
+    count += (mask >> k & 1) & (from[k] != but);
   }
   return count;
 }
@@ -196,7 +205,6 @@ static inline void sim_store(float *p, SimF a) { *p = a; }
 static inline SimF sim_sqrt(SimF a) { return sqrtf(a); }
 static inline SimF sim_max(SimF a, SimF b) { return a > b ? a : b; }
 static inline SimF sim_min(SimF a, SimF b) { return a < b ? a : b; }
-static inline uint32_t sim_less(SimF a, SimF b) { return a < b; }
 static inline SimF sim_select_less(SimF x, SimF y, SimF chosen, SimF other) { return x < y ? chosen : other; }
 static inline void sim_load4(const float *from, SimF out[4]) {
   for (int c = 0; c < 4; c++) out[c] = from[c];
@@ -207,13 +215,11 @@ static inline void sim_gather4(const float *base, const uint32_t *index, SimF ou
 static inline void sim_store4(float *to, SimF x, SimF y, SimF z, SimF w) {
   to[0] = x, to[1] = y, to[2] = z, to[3] = w;
 }
-static inline uint32_t sim_compress(uint32_t *to, uint32_t first, uint32_t mask) {
-  *to = first;
-  return mask & 1;
+static inline void sim_count_up(uint32_t *to, uint32_t first) { *to = first; }
+static inline uint32_t sim_pack_less(uint32_t *to, const uint32_t *from, SimF a, SimF b, uint32_t but) {
+  *to = *from;
+  return a < b && *from != but;
 }
 #endif
-
-/// The lanes' numbers 0, 1, 2 … as a list, for bits of masks.
-#define SIM_ALL_LANES ((uint32_t)((1ull << SIM_LANES) - 1))
 
 #endif

@@ -93,6 +93,7 @@ static void density_matches_all_pairs(void **state) {
 static SimStep a_step(SimWorld *world) {
   SimStep step = sim_step_make(world, 0.004f);
   step.omega = 0.6f;
+  step.wall_answer = 1.4f;
   step.relaxation = 0.1f * world->cubic.lattice_gradient;
   return step;
 }
@@ -127,7 +128,7 @@ static void an_iteration_matches_all_pairs(void **state) {
   double most = 0, h = (double)world->cubic.h;
   for (int32_t i = 0; i < n; i++) {
     double move[3] = {0}, length = 0;
-    for (int k = 0; k < 3 && p->near[i / SIM_CHUNK]; k++) move[k] = lambda[i] * (double)p->solid[4 * i + k];
+    for (int k = 0; k < 3 && p->near[i / SIM_CHUNK]; k++) move[k] = 1.4 * lambda[i] * (double)p->solid[4 * i + k];
     for (int32_t j = 0; j < n; j++) {
       double d[3], r = 0;
       for (int k = 0; k < 3; k++) d[k] = (double)p->second[4 * i + k] - (double)p->second[4 * j + k], r += d[k] * d[k];
