@@ -96,11 +96,11 @@ void sim_reaction_solid(SimReaction *reaction, int32_t i, const SimSolid *solid)
   memcpy(note->gradient, solid->body_gradient, sizeof note->gradient);
 }
 
-void sim_reaction_corrected(SimReaction *reaction, int32_t i, float lambda, int32_t clamped, float kept,
+void sim_reaction_corrected(SimReaction *reaction, int32_t i, float answer, int32_t clamped, float kept,
                             const float free[3], const float to[3]) {
   SimNote *note = &reaction->notes[i];
   for (int slot = 0; slot < SIM_FLOATERS; slot++)
-    for (int k = 0; k < 3; k++) note->shift[slot][k] = lambda * note->gradient[slot][k];
+    for (int k = 0; k < 3; k++) note->shift[slot][k] = answer * note->gradient[slot][k];
   note_clamp(reaction, note, clamped, kept, free, to, 0);
 }
 

@@ -1,6 +1,6 @@
 // What the water gives to floating bodies: the opposite of everything that these bodies do to particles.
 //
-// Whatever changes a particle's velocity on behalf of a floating body, the pressure term λ_i ∇f of its share f of the
+// Whatever changes a particle's velocity on behalf of a floating body, the pressure term κ λ_i ∇f of its share f of the
 // particle's density or the hard clamp, is noted per particle as a displacement, the change of velocity times dt. After each
 // sweep over the particles sim_reaction_collect turns the notes into impulses −m Δx/dt at the particles' places and adds them
 // up per body: one note is one equal and opposite push, so fluid and bodies together keep their momentum to rounding. (The
@@ -63,9 +63,9 @@ void sim_reaction_predicted(SimReaction *reaction, int32_t i, int32_t clamped, f
                             const float to[3]);
 /// What sim_boundary_solid said at the particle's place.
 void sim_reaction_solid(SimReaction *reaction, int32_t i, const SimSolid *solid);
-/// The particle was moved by λ times the share's gradient (among others) to `free`, and by the clamp to `to`, which returned
+/// The particle was moved by `answer` (m²) times the share's gradient (among others) to `free`, and by the clamp to `to`, which returned
 /// `clamped` and of which the share `kept` changed its velocity. Uses what sim_reaction_solid noted.
-void sim_reaction_corrected(SimReaction *reaction, int32_t i, float lambda, int32_t clamped, float kept,
+void sim_reaction_corrected(SimReaction *reaction, int32_t i, float answer, int32_t clamped, float kept,
                             const float free[3], const float to[3]);
 
 /// Add up the notes of particles 0 … count − 1 in chunks near a body (SIM_NEAR_BODY; `near` NULL: in all).

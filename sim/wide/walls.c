@@ -78,18 +78,18 @@ void WIDE(sim_wall_solid)(const SimStep *step, int32_t i, const SimF own[4], Sim
   }
 }
 
-static void clamp_to_bodies(const SimStep *step, int32_t i, const SimF own[4], SimF to[3], SimF gain[3]) {
+static void clamp_to_bodies(const SimStep *step, int32_t i, SimF answer, SimF to[3], SimF gain[3]) {
   const SimParticles *p = step->particles;
   SimF start[3];
   SimNear chosen;
-  float place[3][SIM_LANES], gained[3][SIM_LANES], lambda[SIM_LANES];
+  float place[3][SIM_LANES], gained[3][SIM_LANES], answers[SIM_LANES];
   for (int k = 0; k < 3; k++) start[k] = sim_load(p->now.position[k] + i);
   const SimNear *near = choose(step->boundary, start, to, p->count - i, &chosen);
   for (int k = 0; k < 3; k++) {
     sim_store(place[k], to[k]);
     sim_store(gained[k], gain[k]);
   }
-  sim_store(lambda, own[3]);
+  sim_store(answers, answer);
   for (int32_t k = 0; k < SIM_LANES && i + k < p->count; k++) {
     float from[3], free[3], at[3], v[3];
     for (int a = 0; a < 3; a++) {
@@ -99,7 +99,7 @@ static void clamp_to_bodies(const SimStep *step, int32_t i, const SimF own[4], S
     }
     int32_t clamped = sim_boundary_clamp(step->boundary, near, from, at);
     float share = sim_step_clamp_share(step, v, free, at);
-    if (step->reaction) sim_reaction_corrected(step->reaction, i + k, lambda[k], clamped, share, free, at);
+    if (step->reaction) sim_reaction_corrected(step->reaction, i + k, answers[k], clamped, share, free, at);
     for (int a = 0; a < 3; a++) {
       place[a][k] = at[a];
       if (at[a] != free[a]) gained[a][k] += share * (at[a] - free[a]);
@@ -111,13 +111,14 @@ static void clamp_to_bodies(const SimStep *step, int32_t i, const SimF own[4], S
   }
 }
 
-void WIDE(sim_wall_clamp)(const SimStep *step, int32_t i, const SimF own[4], SimF move[3], SimF to[3], SimF gain[3]) {
+void WIDE(sim_wall_clamp)(const SimStep *step, int32_t i, SimF answer, const SimF own[3], SimF move[3], SimF to[3],
+                          SimF gain[3]) {
   const SimBoundary *b = step->boundary;
   SimF free[3] = {to[0], to[1], to[2]};
   bool bodies = step->particles->near[i / SIM_CHUNK] & SIM_NEAR_BODY;
   // A NaN passes through and is caught by the world, not hidden: see sim_max and sim_min.
   if (bodies)
-    clamp_to_bodies(step, i, own, to, gain);
+    clamp_to_bodies(step, i, answer, to, gain);
   else
     for (int k = 0; k < 3; k++)
       to[k] = sim_max(sim_f(b->container.min[k] + b->clearance),
@@ -125,6 +126,6 @@ void WIDE(sim_wall_clamp)(const SimStep *step, int32_t i, const SimF own[4], Sim
   for (int k = 0; k < 3; k++) {
     SimF left = to[k] - own[k];
     move[k] = sim_select_less(to[k], free[k], left, sim_select_less(free[k], to[k], left, move[k]));
-    if (!bodies) gain[k] = move[k];
+    if (!bodies) gain[k] = gain[k] + (to[k] - free[k]);
   }
 }
