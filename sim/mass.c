@@ -39,9 +39,10 @@ static void add_tetrahedron(Moments *m, const float *a, const float *b, const fl
     v[0][k] = (double)a[k], v[1][k] = (double)b[k], v[2][k] = (double)c[k];
     sum[k] = v[0][k] + v[1][k] + v[2][k];
   }
-  double volume = (v[0][0] * (v[1][1] * v[2][2] - v[1][2] * v[2][1]) + v[0][1] * (v[1][2] * v[2][0] - v[1][0] * v[2][2]) +
-                   v[0][2] * (v[1][0] * v[2][1] - v[1][1] * v[2][0])) /
-                  6;
+  double volume =
+      (v[0][0] * (v[1][1] * v[2][2] - v[1][2] * v[2][1]) + v[0][1] * (v[1][2] * v[2][0] - v[1][0] * v[2][2]) +
+       v[0][2] * (v[1][0] * v[2][1] - v[1][1] * v[2][0])) /
+      6;
   m->volume += volume;
   for (int k = 0; k < 3; k++) m->first[k] += volume * sum[k] / 4;
   for (int p = 0; p < 6; p++) {
@@ -104,7 +105,8 @@ static Moments moments_of(const SimObstacle *o) {
     for (int32_t t = 0; t < o->mesh->triangle_count; t++) {
       const int32_t *corner = o->mesh->triangle + 3 * (size_t)t;
       const float *vertex = o->mesh->vertex;
-      add_tetrahedron(&m, vertex + 3 * (size_t)corner[0], vertex + 3 * (size_t)corner[1], vertex + 3 * (size_t)corner[2]);
+      add_tetrahedron(&m, vertex + 3 * (size_t)corner[0], vertex + 3 * (size_t)corner[1],
+                      vertex + 3 * (size_t)corner[2]);
     }
     break;
   }

@@ -27,14 +27,15 @@
 static bool range_check(int32_t index, const char *field, double value, double low, double high, bool open,
                         SimError *error) {
   if (value <= high && (open ? value > low : value >= low)) return true;
-  return sim_fail(error, "obstacles[%d].%s must be in %s%g, %g], got %g", index, field, open ? "(" : "[", low, high, value);
+  return sim_fail(error, "obstacles[%d].%s must be in %s%g, %g], got %g", index, field, open ? "(" : "[", low, high,
+                  value);
 }
 
 static bool vector_check(int32_t index, const char *field, const float *v, int count, SimError *error) {
   for (int k = 0; k < count; k++)
     if (!(fabsf(v[k]) <= 1e6f))
-      return sim_fail(error, "obstacles[%d].%s: component %d must be finite and at most 1e6 in size, got %g", index, field,
-                      k, (double)v[k]);
+      return sim_fail(error, "obstacles[%d].%s: component %d must be finite and at most 1e6 in size, got %g", index,
+                      field, k, (double)v[k]);
   return true;
 }
 
@@ -71,7 +72,8 @@ static bool key_check(const SimObstacleDef *def, int32_t index, int32_t k, SimEr
   if (!(span > 0))
     return sim_fail(error, "obstacles[%d].%s must be later than %g s, got %g", index, field, key[-1].time, key->time);
   snprintf(field, sizeof field, "keys[%d]: its speed in m/s", k);
-  return range_check(index, field, distance(key[-1].position, key->position) / span, 0, (double)MAX_SPEED, false, error);
+  return range_check(index, field, distance(key[-1].position, key->position) / span, 0, (double)MAX_SPEED, false,
+                     error);
 }
 
 static bool scripted_check(const SimObstacleDef *def, int32_t index, SimError *error) {
@@ -106,7 +108,8 @@ bool sim_motion_check(const SimObstacleDef *def, int32_t index, SimError *error)
   case SIM_FLOATING:
     if (!range_check(index, "density", (double)def->density, 0, 1e6, true, error)) return false;
     if (sim_mass_make(&def->body, (double)def->density).mass > 0) return true;
-    return sim_fail(error, "obstacles[%d]: a floating body must hold a volume; its triangles must point outwards", index);
+    return sim_fail(error, "obstacles[%d]: a floating body must hold a volume; its triangles must point outwards",
+                    index);
   }
   return sim_fail(error, "obstacles[%d].motion: unknown motion %d", index, (int)def->motion);
 }
@@ -221,8 +224,8 @@ static bool all_finite(const float *v, int count) {
 }
 
 bool sim_world_drag(SimWorld *world, int32_t obstacle, const float position[3], const float rotation[4]) {
-  if (obstacle < 0 || obstacle >= world->def.obstacle_count ||
-      world->def.obstacles[obstacle].motion != SIM_DRAGGABLE || !position || !all_finite(position, 3))
+  if (obstacle < 0 || obstacle >= world->def.obstacle_count || world->def.obstacles[obstacle].motion != SIM_DRAGGABLE ||
+      !position || !all_finite(position, 3))
     return false;
   if (rotation && (!all_finite(rotation, 4) ||
                    !(fabsf(rotation[0]) + fabsf(rotation[1]) + fabsf(rotation[2]) + fabsf(rotation[3]) > 1e-6f)))
@@ -336,7 +339,8 @@ double sim_motion_longest(const SimWorld *world, double longest) {
     const SimObstacleDef *def = &world->def.obstacles[b];
     const SimMover *mover = &world->motion.movers[b];
     double reach = (double)world->bodies[b].bound;
-    if (def->motion == SIM_SCRIPTED) speed = fmax(speed, scripted_speed(def, world->time, world->time + longest, reach));
+    if (def->motion == SIM_SCRIPTED)
+      speed = fmax(speed, scripted_speed(def, world->time, world->time + longest, reach));
     if (def->motion == SIM_DRAGGABLE && memcmp(&mover->now, &mover->target, sizeof(SimPose)) != 0)
       speed = fmax(speed, (double)def->max_speed);
     if (def->motion == SIM_FLOATING)

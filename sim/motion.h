@@ -25,13 +25,13 @@ typedef struct SimMover {
 } SimMover;
 
 typedef struct SimMotionState {
-  SimMover *movers;     ///< (obstacle_count); NULL where no obstacle moves
-  SimBoundary start;    ///< the world's, with the bodies as they were at the start of the substep; unused where none moves
+  SimMover *movers;  ///< (obstacle_count); NULL where no obstacle moves
+  SimBoundary start; ///< the world's, with the bodies as they were at the start of the substep; unused where none moves
   SimBody *start_bodies; ///< (obstacle_count), of `start`
-  SimPoseKey *keys;     ///< all scripts' keys, one after the other
-  SimRigid *rigid;      ///< NULL where no obstacle floats
-  float clamp_speed;    ///< m/s, in this substep: of the fastest point of a body, and of what leaves an overlap
-  SimReaction reaction; ///< unused where no obstacle floats
+  SimPoseKey *keys;      ///< all scripts' keys, one after the other
+  SimRigid *rigid;       ///< NULL where no obstacle floats
+  float clamp_speed;     ///< m/s, in this substep: of the fastest point of a body, and of what leaves an overlap
+  SimReaction reaction;  ///< unused where no obstacle floats
 } SimMotionState;
 
 /// Whether an obstacle's motion is possible; otherwise *error names obstacles[index], the field, the range and the value.

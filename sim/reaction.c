@@ -124,8 +124,8 @@ static int32_t chunk_end(int32_t begin, int32_t end) {
 static void noted_kernel(int32_t begin, int32_t end, const void *context) {
   const NotedContext *c = context;
   for (int32_t first = begin; first < end; first += SIM_CHUNK)
-    c->reaction->noted[first / SIM_CHUNK] = (!c->near || c->near[first / SIM_CHUNK] & SIM_NEAR_BODY) &&
-                                            any_note(c->reaction, first, chunk_end(first, end));
+    c->reaction->noted[first / SIM_CHUNK] =
+        (!c->near || c->near[first / SIM_CHUNK] & SIM_NEAR_BODY) && any_note(c->reaction, first, chunk_end(first, end));
 }
 
 static void add_push(SimGiven *given, const double arm[3], const double push[3]) {

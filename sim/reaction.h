@@ -27,12 +27,12 @@ typedef struct SimNote {
 typedef struct SimReaction {
   const SimBoundary *boundary;
   const SimRigid *rigid;
-  float most;             ///< m, that a wedged particle moves a body's layer in this substep
-  float inverse_slope;    ///< m: one over the steepness of a flat wall's share where the first layer of particles lies
-  double particle_mass;   ///< kg
-  SimNote *notes;         ///< (capacity), by the kernels; of chunks near no body they are not valid
-  uint8_t *noted;         ///< (chunks): whether a chunk of particles has notes; by sim_reaction_collect and _layer
-  SimGiven *given;        ///< (floating bodies): what was given since sim_reaction_clear
+  float most;           ///< m, that a wedged particle moves a body's layer in this substep
+  float inverse_slope;  ///< m: one over the steepness of a flat wall's share where the first layer of particles lies
+  double particle_mass; ///< kg
+  SimNote *notes;       ///< (capacity), by the kernels; of chunks near no body they are not valid
+  uint8_t *noted;       ///< (chunks): whether a chunk of particles has notes; by sim_reaction_collect and _layer
+  SimGiven *given;      ///< (floating bodies): what was given since sim_reaction_clear
 } SimReaction;
 
 /// Where particle i is: (x[0][i stride], x[1][i stride], x[2][i stride]).
@@ -42,7 +42,8 @@ typedef struct SimPlaces {
 } SimPlaces;
 
 /// `boundary` and `rigid` must stay; they need not be complete yet but for the wall. false: no memory.
-bool sim_reaction_create(SimReaction *reaction, const SimBoundary *boundary, const SimRigid *rigid, double particle_mass);
+bool sim_reaction_create(SimReaction *reaction, const SimBoundary *boundary, const SimRigid *rigid,
+                         double particle_mass);
 void sim_reaction_destroy(SimReaction *reaction);
 /// Make room for the notes of `count` particles. false: no memory.
 bool sim_reaction_reserve(SimReaction *reaction, int32_t count);

@@ -28,6 +28,10 @@
 // K is found from the particles at the body: each adds m w (n, r × n)(n, r × n)ᵀ, so a ball that spins takes nothing along,
 // and a body in the air nothing at all.
 //
+// Without K a cube of 100 kg/m³ (8 spacings an edge) that is let go under water explodes; with it 40 and more are stable,
+// 30 and less are not. As the pressure comes only some layers far in a substep, so does the added mass
+// that is felt: finer particles change nothing (100 kg/m³ with 6, 11 and 16 spacings an edge).
+//
 // Limits. Contacts act on the body alone, without K: its speed there is given by what it touches. dWorldStep grows with the
 // third power of the contacts of one heap: meant for tens of bodies in touch, not for thousands. A body starts and stays in
 // the container (its walls are solid for it also at the top) and a glass is a ring of GLASS_WALLS planes around the cylinder,
@@ -62,10 +66,10 @@
 enum { FLOATS = 1, STANDS = 2 };
 
 typedef struct Floater {
-  int32_t index;       ///< of its obstacle
+  int32_t index; ///< of its obstacle
   SimMass mass;
-  double ahead[3];     ///< m, the centre of mass at the predicted pose
-  double force[6];     ///< N, N m: of water and gravity in this substep
+  double ahead[3]; ///< m, the centre of mass at the predicted pose
+  double force[6]; ///< N, N m: of water and gravity in this substep
 } Floater;
 
 struct SimRigid {
@@ -74,15 +78,15 @@ struct SimRigid {
   int32_t count, floating;
   double spacing, lightest; ///< m; kg
   bool meshes;
-  Floater *floaters;        ///< (floating)
-  int32_t *slot;            ///< (count), −1: it does not float
+  Floater *floaters; ///< (floating)
+  int32_t *slot;     ///< (count), −1: it does not float
   // ODE's objects, made by sim_rigid_reset.
   dWorldID world;
   dThreadingImplementationID threading;
   dSpaceID space;
   dJointGroupID contacts;
-  dBodyID *bodies;          ///< (count)
-  dTriMeshDataID *mesh;     ///< (count), NULL: no mesh
+  dBodyID *bodies;      ///< (count)
+  dTriMeshDataID *mesh; ///< (count), NULL: no mesh
   dGeomID walls[MAX_WALLS];
   int wall_count;
 };
@@ -364,8 +368,7 @@ static void mass_matrix(const Floater *floater, dBodyID body, const SimGiven *gi
     a[row][row] += floater->mass.mass;
     for (int column = 0; column <= row; column++)
       for (int k = 0; k < 3; k++)
-        for (int l = 0; l < 3; l++)
-          a[3 + row][3 + column] += r[4 * row + k] * inertia[k][l] * r[4 * column + l];
+        for (int l = 0; l < 3; l++) a[3 + row][3 + column] += r[4 * row + k] * inertia[k][l] * r[4 * column + l];
   }
 }
 

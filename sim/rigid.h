@@ -12,9 +12,10 @@ typedef struct SimRigid SimRigid;
 typedef struct SimGiven {
   double linear[3];  ///< N s
   double angular[3]; ///< N m s
-  double layer[21];  ///< kg, kg m, kg m²: the mass matrix (lower triangle, rows first) of the water next to the body, for
-                     ///< the body's velocity and spin
-  double change[6];  ///< m/s, rad/s: what body and layer together got of it, by sim_rigid_step
+  double
+      layer[21]; ///< kg, kg m, kg m²: the mass matrix (lower triangle, rows first) of the water next to the body, for
+                 ///< the body's velocity and spin
+  double change[6]; ///< m/s, rad/s: what body and layer together got of it, by sim_rigid_step
 } SimGiven;
 
 /// A set of `count` obstacles, `defs`, which must stay; those that do not float are what floating ones run into. NULL: no

@@ -15,29 +15,29 @@
 typedef struct SimStep {
   const SimWide *wide;
   int32_t threads;
-  float dt, inverse_dt;       ///< s, 1/s
+  float dt, inverse_dt; ///< s, 1/s
   SimCubic cubic;
-  float gravity[3];           ///< m/s²
+  float gravity[3]; ///< m/s²
   int32_t push_count;
   const SimPush *pushes;
   const SimBoundary *boundary;
-  const SimBoundary *start;   ///< the same with the bodies in the poses that they had at the start of the substep
+  const SimBoundary *start; ///< the same with the bodies in the poses that they had at the start of the substep
   const SimWallTable *wall;
   SimParticles *particles;
   SimNeighbours *neighbours;
-  float clamp_speed;          ///< m/s, to which the clamp may bring a particle that was slower
-  SimReaction *reaction;      ///< what floating bodies get is noted here; NULL where none floats, or nothing is to be noted
+  float clamp_speed;     ///< m/s, to which the clamp may bring a particle that was slower
+  SimReaction *reaction; ///< what floating bodies get is noted here; NULL where none floats, or nothing is to be noted
   // Viscosity: v_i += Σ_j (share W_ij + diffusion |∇W_ij|/r) (v_j − v_i)
-  float viscosity_share;      ///< XSPH's c
-  float viscosity_diffusion;  ///< m², 2 ν dt
+  float viscosity_share;     ///< XSPH's c
+  float viscosity_diffusion; ///< m², 2 ν dt
   // Position based fluids
-  float omega;                ///< ω, damping of the Jacobi iteration
-  float relaxation;           ///< 1/m², ε
-  float tensile;              ///< m², k
-  float wall_answer;          ///< κ, how much of a particle's pressure a wall answers with
-  float warm;                 ///< s², turns `pressure` into the first λ
-  bool stabilise;             ///< the corrections of this iteration move particles without changing their velocity
-  bool measure;               ///< only measure the present state: nothing is corrected
+  float omega;       ///< ω, damping of the Jacobi iteration
+  float relaxation;  ///< 1/m², ε
+  float tensile;     ///< m², k
+  float wall_answer; ///< κ, how much of a particle's pressure a wall answers with
+  float warm;        ///< s², turns `pressure` into the first λ
+  bool stabilise;    ///< the corrections of this iteration move particles without changing their velocity
+  bool measure;      ///< only measure the present state: nothing is corrected
 } SimStep;
 
 typedef struct SimWorld SimWorld;

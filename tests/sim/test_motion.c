@@ -229,7 +229,8 @@ static void corner_of(const SimObstacle *o, const float local[3], double corner[
   }
   for (int k = 0; k < 3; k++) {
     int a = (k + 1) % 3, b = (k + 2) % 3;
-    corner[k] = (double)o->position[k] + (double)local[k] + (double)q[3] * t[k] + (double)q[a] * t[b] - (double)q[b] * t[a];
+    corner[k] =
+        (double)o->position[k] + (double)local[k] + (double)q[3] * t[k] + (double)q[a] * t[b] - (double)q[b] * t[a];
   }
 }
 
@@ -309,8 +310,8 @@ static void paddle_sweeps_all_water(void **state) {
     float face = frame->obstacles[0].position[0] + 0.05f;
     for (int32_t i = 0; i < frame->count; i++)
       if (frame->position[3 * i] < face - 0.005f)
-        fail_msg("frame %d: particle %u at %g behind the gate's face at %g", f, frame->id[i], (double)frame->position[3 * i],
-                 (double)face);
+        fail_msg("frame %d: particle %u at %g behind the gate's face at %g", f, frame->id[i],
+                 (double)frame->position[3 * i], (double)face);
   }
   sim_frame_buffer_destroy(buffer);
   sim_world_destroy(world);
@@ -371,10 +372,11 @@ static void impossible_motions_are_named(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(keys_are_followed),         cmocka_unit_test(keys_repeat),
-      cmocka_unit_test(stroke_is_a_cosine),        cmocka_unit_test(steps_do_not_matter),
-      cmocka_unit_test(substeps_follow_the_body),  cmocka_unit_test(dragging_keeps_its_speed), cmocka_unit_test(dragging_asks_for_substeps),
-      cmocka_unit_test(dragging_bounds_the_corners), cmocka_unit_test(targets_are_checked),
-      cmocka_unit_test(paddle_sweeps_all_water),   cmocka_unit_test(impossible_motions_are_named)};
+      cmocka_unit_test(keys_are_followed),           cmocka_unit_test(keys_repeat),
+      cmocka_unit_test(stroke_is_a_cosine),          cmocka_unit_test(steps_do_not_matter),
+      cmocka_unit_test(substeps_follow_the_body),    cmocka_unit_test(dragging_keeps_its_speed),
+      cmocka_unit_test(dragging_asks_for_substeps),  cmocka_unit_test(dragging_bounds_the_corners),
+      cmocka_unit_test(targets_are_checked),         cmocka_unit_test(paddle_sweeps_all_water),
+      cmocka_unit_test(impossible_motions_are_named)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

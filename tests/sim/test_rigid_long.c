@@ -40,7 +40,8 @@ static Rest float_body(SimShape shape, float size, float density, float y, const
   }
   double h = (double)size, base = h * h, area = 1.44, bottom = mean - h / 2;
   double level = (volume - base * bottom) / (area - base);
-  print_message("density %g: centre %.4f, draught %.3f, speed %.3f m/s\n", (double)density, mean, (level - bottom) / h, speed);
+  print_message("density %g: centre %.4f, draught %.3f, speed %.3f m/s\n", (double)density, mean, (level - bottom) / h,
+                speed);
   sim_frame_buffer_destroy(buffer);
   sim_world_destroy(world);
   return (Rest){(level - bottom) / h, speed, mean, volume};
@@ -119,8 +120,9 @@ static void a_block_falls_from_high_up(void **state) {
   }
   // Its draught is 0.6 of 0.3 m, the level 0.5 m and what it displaces.
   double level = count * pow(0.05, 3) / 1.44 + 0.6 * 0.027 / 1.44, centre = level - 0.18 + 0.15;
-  print_message("energy %.1f J at the start, %.1f J at most; fastest %.2f m/s, highest %.2f m; floats at %.3f m, not %.3f m\n",
-                start, most, fastest, highest, height, centre);
+  print_message(
+      "energy %.1f J at the start, %.1f J at most; fastest %.2f m/s, highest %.2f m; floats at %.3f m, not %.3f m\n",
+      start, most, fastest, highest, height, centre);
   if (most > 1.001 * start) fail_msg("energy grows from %g to %g J", start, most);
   if (fabs(height - centre) > 0.1 * 0.18) fail_msg("it floats at %g m instead of %g m", height, centre);
   sim_frame_buffer_destroy(buffer);
@@ -152,7 +154,8 @@ static void a_paddle_makes_waves(void **state) {
     test_inside_container(frame);
     test_outside_obstacles(frame);
     double volume = 0;
-    for (int32_t i = 0; i < frame->count; i++) volume += fabsf(frame->position[3 * i] - 0.5f) < 0.06f ? pow(0.03, 3) : 0;
+    for (int32_t i = 0; i < frame->count; i++)
+      volume += fabsf(frame->position[3 * i] - 0.5f) < 0.06f ? pow(0.03, 3) : 0;
     if (f < 120 || f > 240) continue; // before waves come back from the far end
     low = fmin(low, volume / (0.12 * 0.24));
     high = fmax(high, volume / (0.12 * 0.24));
@@ -169,7 +172,8 @@ static void a_paddle_makes_waves(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(half_density_floats_half_deep),
                                      cmocka_unit_test(half_density_floats_tilted),
-                                     cmocka_unit_test(light_body_is_stable), cmocka_unit_test(heavy_body_sinks),
+                                     cmocka_unit_test(light_body_is_stable),
+                                     cmocka_unit_test(heavy_body_sinks),
                                      cmocka_unit_test(pushed_off_balance_it_comes_to_rest),
                                      cmocka_unit_test(a_block_falls_from_high_up),
                                      cmocka_unit_test(a_paddle_makes_waves)};
