@@ -24,7 +24,8 @@ static SimStep make_step(SimWorld *world, float dt) {
   step.omega = world->cubic.omega;
   step.relaxation = world->def.relaxation * strength;
   step.tensile = world->def.tensile / strength;
-  step.wall_answer = 1 + WALL_ANSWER * fminf(1, powf(2 / world->def.support, 3));
+  float share = fminf(1, 2 / world->def.support);
+  step.wall_answer = 1 + WALL_ANSWER * share * share * share;
   step.warm = dt * dt;
   return step;
 }
