@@ -179,7 +179,6 @@ typedef struct Sum {
   float walls_free, walls_slope[3]; ///< A and its gradient
   float free, slope[3];             ///< what is free so far, and its gradient
   float shares;                     ///< Σ of all shares, to weigh velocity and friction by
-  float body_share;                 ///< of solid->body
 } Sum;
 
 // The part of what the walls leave free that the body leaves free, 1 − s Π (1 − w F)/A, and its gradient.
@@ -202,11 +201,13 @@ static void add_body(const SimBoundary *boundary, int32_t b, const float point[3
   float g[3], rest_slope[3], share = sim_body_solid(body, &boundary->wall, point, g);
   if (share <= 0) return;
   float rest = body_rest(boundary, sum, body, share, g, rest_slope);
-  for (int k = 0; k < 3; k++) solid->body_gradient[k] *= rest;
-  if (body->floats && share > sum->body_share) {
-    solid->body = b;
-    sum->body_share = share;
-    for (int k = 0; k < 3; k++) solid->body_gradient[k] = -sum->free * rest_slope[k];
+  for (int slot = 0; slot < SIM_FLOATERS && solid->body[slot] >= 0; slot++)
+    for (int k = 0; k < 3; k++) solid->body_gradient[slot][k] *= rest;
+  if (body->floats) {
+    int slot = 0;
+    while (slot < SIM_FLOATERS - 1 && solid->body[slot] >= 0) slot++;
+    if (solid->body[slot] < 0) solid->body[slot] = b;
+    for (int k = 0; k < 3; k++) solid->body_gradient[slot][k] -= sum->free * rest_slope[k];
   }
   for (int k = 0; k < 3; k++) sum->slope[k] = sum->slope[k] * rest + sum->free * rest_slope[k];
   sum->free *= rest;
@@ -216,10 +217,10 @@ static void add_body(const SimBoundary *boundary, int32_t b, const float point[3
 }
 
 void sim_boundary_solid(const SimBoundary *boundary, const SimNear *near, const float point[3], SimSolid *solid) {
-  *solid = (SimSolid){.body = -1};
+  *solid = (SimSolid){.body = {-1, -1}};
   Sum sum;
   sum.walls = (!near || near->container) && near_container(boundary, point, point, boundary->wall.reach);
-  sum.free = 1, sum.shares = sum.body_share = 0;
+  sum.free = 1, sum.shares = 0;
   sum.slope[0] = sum.slope[1] = sum.slope[2] = 0;
   if (sum.walls) {
     container_faces(boundary, point, &sum.faces);

@@ -32,14 +32,17 @@ typedef struct SimBoundary {
   SimWall wall;
 } SimBoundary;
 
+/// Floating bodies that are told apart at one point.
+#define SIM_FLOATERS 2
+
 /// What walls and obstacles are to a particle at one point.
 typedef struct SimSolid {
   float share;            ///< of the density sum, [0, 1]
   float gradient[3];      ///< 1/m, of the share
   float velocity[3];      ///< m/s, of the walls there, weighted by their shares; 0 where there are none
   float friction;         ///< of the walls there, weighted likewise
-  int32_t body;           ///< the floating body with the largest share there, −1: none in reach
-  float body_gradient[3]; ///< 1/m, what that body adds to the gradient
+  int32_t body[SIM_FLOATERS]; ///< the floating bodies in reach there, −1: fewer
+  float body_gradient[SIM_FLOATERS][3]; ///< 1/m, what each of them adds to the gradient; a third one counts as the second
 } SimSolid;
 
 /// Bodies that SimNear can list. Where there are more, it says to look at all of them.

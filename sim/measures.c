@@ -68,5 +68,8 @@ SimMeasures sim_world_measures(SimWorld *world) {
   measures.mean_density_error = sum[ERROR_COUNT] > 0 ? sum[ERROR_SUM] / sum[ERROR_COUNT] : 0;
   measures.max_density_error = most[MAX_ERROR];
   measures.max_speed = sqrt(most[MAX_SPEED2]);
+  if (world->motion.rigid)
+    sim_rigid_measures(world->motion.rigid, world->gravity, world->def.container.min, measures.body_momentum,
+                       &measures.body_energy);
   return measures;
 }

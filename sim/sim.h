@@ -224,6 +224,8 @@ typedef struct SimMeasures {
   double mean_density_error;   ///< mean |ρ − ρ0|/ρ0 over particles away from the free surface; 0 when there are none
   double max_density_error;    ///< largest of the same
   double max_speed;            ///< m/s
+  double body_momentum[3];     ///< kg m/s, of the floating bodies
+  double body_energy;          ///< J, of the floating bodies, kinetic and potential
 } SimMeasures;
 SimMeasures sim_world_measures(SimWorld *world);
 

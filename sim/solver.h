@@ -7,6 +7,7 @@
 #include "sim/boundary.h"
 #include "sim/neighbours.h"
 #include "sim/particles.h"
+#include "sim/reaction.h"
 #include "sim/sim.h"
 #include "sim/wall_table.h"
 
@@ -14,26 +15,29 @@
 typedef struct SimStep {
   const SimWide *wide;
   int32_t threads;
-  float dt, inverse_dt;       ///< s, 1/s
+  float dt, inverse_dt; ///< s, 1/s
   SimCubic cubic;
-  float gravity[3];           ///< m/s²
+  float gravity[3]; ///< m/s²
   int32_t push_count;
   const SimPush *pushes;
   const SimBoundary *boundary;
+  const SimBoundary *start; ///< the same with the bodies in the poses that they had at the start of the substep
   const SimWallTable *wall;
   SimParticles *particles;
   SimNeighbours *neighbours;
+  float clamp_speed;     ///< m/s, to which the clamp may bring a particle that was slower
+  SimReaction *reaction; ///< what floating bodies get is noted here; NULL where none floats, or nothing is to be noted
   // Viscosity: v_i += Σ_j (share W_ij + diffusion |∇W_ij|/r) (v_j − v_i)
-  float viscosity_share;      ///< XSPH's c
-  float viscosity_diffusion;  ///< m², 2 ν dt
+  float viscosity_share;     ///< XSPH's c
+  float viscosity_diffusion; ///< m², 2 ν dt
   // Position based fluids
-  float omega;                ///< ω, damping of the Jacobi iteration
-  float relaxation;           ///< 1/m², ε
-  float tensile;              ///< m², k
-  float wall_answer;          ///< κ, how much of a particle's pressure a wall answers with
-  float warm;                 ///< s², turns `pressure` into the first λ
-  bool stabilise;             ///< the corrections of this iteration move particles without changing their velocity
-  bool measure;               ///< only measure the present state: nothing is corrected
+  float omega;       ///< ω, damping of the Jacobi iteration
+  float relaxation;  ///< 1/m², ε
+  float tensile;     ///< m², k
+  float wall_answer; ///< κ, how much of a particle's pressure a wall answers with
+  float warm;        ///< s², turns `pressure` into the first λ
+  bool stabilise;    ///< the corrections of this iteration move particles without changing their velocity
+  bool measure;      ///< only measure the present state: nothing is corrected
 } SimStep;
 
 typedef struct SimWorld SimWorld;
@@ -41,7 +45,9 @@ typedef struct SimWorld SimWorld;
 /// A method: how a world gets from one state to the next. Wide kernels and stages are its words.
 typedef struct SimMethod {
   const char *name;
-  /// One substep of dt > 0; on success the new state stands in `now` and *error is untouched.
+  /// One substep of dt > 0; on success the new state stands in `now` and *error is untouched. The bodies stand in their
+  /// poses at its end (motion.h); each sweep that changes velocities on a body's behalf is followed by sim_step_collect,
+  /// and `pressure` ends negative where a particle is pressed.
   bool (*substep)(SimWorld *world, float dt, SimError *error);
   /// The longest substep that the method follows, s, apart from the CFL condition on the fastest particle.
   double (*longest)(const SimWorld *world);
@@ -55,16 +61,20 @@ const SimMethod *sim_method(SimSolver solver);
 /// The context of a substep of this length; what only one method reads is left 0.
 SimStep sim_step_make(SimWorld *world, float dt);
 
-/// v* = v + dt a, x* = x + dt v*, clamped; a is gravity and the pushes. x* stands in `second` as axes.
+/// How much of a move by the clamp, from `free` to `to`, becomes velocity, v + share (to − free)/dt.
+float sim_step_clamp_share(const SimStep *step, const float v[3], const float free[3], const float to[3]);
+/// v* = v + dt a, x* = x + dt v*, clamped; a is gravity and the pushes. x* stands in `second` as axes. Collects by itself.
 void sim_step_predict(const SimStep *step);
 /// Sort by `second` as axes, build the lists, note which chunks are near what. Timed as the two stages.
 bool sim_step_neighbours(SimWorld *world, SimStage sort_stage, SimStage list_stage, double *since, SimError *error);
+/// Give the floating bodies what the sweep that has just ended noted; the particles are in `first`.
+void sim_step_collect(const SimStep *step);
 /// XSPH and the viscosity of the liquid; reads the positions in `first`, changes next_velocity.
 void sim_step_viscosity(const SimStep *step);
 /// Whether next_velocity can be followed; otherwise *error names stage and particle.
 bool sim_step_check(SimWorld *world, SimStage stage, SimError *error);
 /// The positions in `first` and next_velocity become the state.
-void sim_step_commit(SimWorld *world, float dt);
+void sim_step_commit(SimWorld *world);
 /// Add the time since *since to a stage.
 void sim_step_lap(SimWorld *world, SimStage stage, double *since);
 

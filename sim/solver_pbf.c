@@ -70,11 +70,15 @@ static void start_to_second_kernel(int32_t begin, int32_t end, const void *conte
 // What the state brings along: its compression, and the pressure that it was left with.
 static bool warm_start(SimWorld *world, const SimStep *step, double *moved, double *since, SimError *error) {
   SimParticles *p = step->particles;
+  SimStep start = *step; // compression that comes from the bodies' moves is new
+  start.boundary = step->start;
+  start.reaction = NULL;
   sim_parallel_for(step->threads, p->count, start_to_second_kernel, p);
   sim_particles_pad(p, p->second);
-  sim_parallel_for(step->threads, p->count, step->wide->pbf_inherit, step);
+  sim_parallel_for(step->threads, p->count, step->wide->pbf_inherit, &start);
   sim_parallel_for(step->threads, p->count, step->wide->pbf_prepare, step);
   *moved = correct(step);
+  sim_step_collect(step);
   sim_step_lap(world, SIM_STAGE_warm_start, since);
   return check_move(world, *moved, error);
 }
@@ -89,9 +93,11 @@ static bool solve_density(SimWorld *world, SimStep *step, double *since, SimErro
       moved = 0;
     }
     step->stabilise = k > 0 && k == world->def.iterations - 1;
+    if (step->stabilise) step->reaction = NULL; // no velocity changes, so bodies get nothing
     sim_parallel_for(step->threads, step->particles->count, step->wide->pbf_density, step);
     sim_step_lap(world, SIM_STAGE_density, since);
     double move = correct(step);
+    sim_step_collect(step);
     sim_step_lap(world, SIM_STAGE_correct, since);
     if (!check_move(world, move, error)) return false;
     moved += move;
@@ -128,7 +134,7 @@ static bool substep(SimWorld *world, float dt, SimError *error) {
   sim_step_viscosity(&step);
   sim_step_lap(world, SIM_STAGE_viscosity, &since);
 
-  sim_step_commit(world, dt);
+  sim_step_commit(world);
   return true;
 }
 

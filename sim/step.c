@@ -20,9 +20,12 @@ SimStep sim_step_make(SimWorld *world, float dt) {
                   .push_count = world->push_count,
                   .pushes = world->pushes,
                   .boundary = &world->boundary,
+                  .start = world->motion.movers ? &world->motion.start : &world->boundary,
                   .wall = &world->wall,
                   .particles = &world->particles,
                   .neighbours = &world->neighbours,
+                  .clamp_speed = world->motion.clamp_speed,
+                  .reaction = world->motion.rigid && dt > 0 ? &world->motion.reaction : NULL,
                   .viscosity_share = world->def.viscosity,
                   .viscosity_diffusion = 2 * world->def.kinematic_viscosity * dt};
   memcpy(step.gravity, world->gravity, sizeof step.gravity);
@@ -86,6 +89,22 @@ static void fly(const SimStep *step, int32_t begin, int32_t end, float *const ax
   }
 }
 
+// A particle that is stopped, or taken along by a body, gets all of it. One that is squeezed out from between a body and a
+// wall goes a way that has nothing to do with dt; as a velocity that would be without bound where dt is small, and shorten dt
+// further. So the clamp makes no particle faster than it was or, if that is more, than step->clamp_speed.
+float sim_step_clamp_share(const SimStep *step, const float v[3], const float free[3], const float to[3]) {
+  float vv = 0, vb = 0, bb = 0;
+  for (int k = 0; k < 3; k++) {
+    float b = (to[k] - free[k]) * step->inverse_dt;
+    vv += v[k] * v[k];
+    vb += v[k] * b;
+    bb += b * b;
+  }
+  float most = fmaxf(vv, step->clamp_speed * step->clamp_speed);
+  if (!(vv + 2 * vb + bb > most)) return 1;
+  return fminf(1, fmaxf(0, (sqrtf(fmaxf(0, vb * vb + bb * (most - vv))) - vb) / bb)); // |v + share b|² = most
+}
+
 static void predict_kernel(int32_t begin, int32_t end, const void *context) {
   const SimStep *step = context;
   SimSorted *now = &step->particles->now;
@@ -94,20 +113,40 @@ static void predict_kernel(int32_t begin, int32_t end, const void *context) {
   float *axes[3];
   sim_particles_second_as_axes(step->particles, axes);
   fly(step, begin, end, axes, &box);
-  if (!sim_boundary_select(step->boundary, box.low, box.high, 0, &near)) return;
+  if (!sim_boundary_select(step->boundary, box.low, box.high, 0, &near)) {
+    if (step->reaction) sim_reaction_none(step->reaction, begin, end);
+    return;
+  }
   for (int32_t i = begin; i < end; i++) {
-    float from[3], to[3];
-    for (int k = 0; k < 3; k++) from[k] = now->position[k][i], to[k] = axes[k][i];
-    sim_boundary_clamp(step->boundary, &near, from, to);
+    float from[3], free[3], to[3], v[3];
     for (int k = 0; k < 3; k++) {
-      if (to[k] != axes[k][i]) now->next_velocity[k][i] += (to[k] - axes[k][i]) * step->inverse_dt;
+      from[k] = now->position[k][i];
+      to[k] = free[k] = axes[k][i];
+      v[k] = now->next_velocity[k][i];
+    }
+    int32_t clamped = sim_boundary_clamp(step->boundary, &near, from, to);
+    float share = sim_step_clamp_share(step, v, free, to);
+    if (step->reaction) sim_reaction_predicted(step->reaction, i, clamped, share, free, to);
+    for (int k = 0; k < 3; k++) {
+      if (to[k] != free[k]) now->next_velocity[k][i] += share * (to[k] - free[k]) * step->inverse_dt;
       axes[k][i] = to[k];
     }
   }
 }
 
 void sim_step_predict(const SimStep *step) {
-  sim_parallel_for(step->threads, step->particles->count, predict_kernel, step);
+  SimParticles *p = step->particles;
+  float *axes[3];
+  sim_parallel_for(step->threads, p->count, predict_kernel, step);
+  sim_particles_second_as_axes(p, axes);
+  const SimPlaces places = {{axes[0], axes[1], axes[2]}, 1};
+  if (step->reaction) sim_reaction_collect(step->reaction, step->threads, p->count, NULL, &places, step->inverse_dt);
+}
+
+void sim_step_collect(const SimStep *step) {
+  SimParticles *p = step->particles;
+  const SimPlaces places = {{p->first, p->first + 1, p->first + 2}, 4};
+  if (step->reaction) sim_reaction_collect(step->reaction, step->threads, p->count, p->near, &places, step->inverse_dt);
 }
 
 // ---- Neighbours ------------------------------------------------------------------------------------------------------
@@ -213,7 +252,7 @@ static void commit_kernel(int32_t begin, int32_t end, const void *context) {
     for (int k = 0; k < 3; k++) p->now.position[k][i] = p->first[4 * (size_t)i + k];
 }
 
-void sim_step_commit(SimWorld *world, float dt) {
+void sim_step_commit(SimWorld *world) {
   SimSorted *now = &world->particles.now;
   sim_parallel_for(world->threads, world->particles.count, commit_kernel, &world->particles);
   for (int k = 0; k < 3; k++) {
@@ -222,7 +261,6 @@ void sim_step_commit(SimWorld *world, float dt) {
     now->next_velocity[k] = velocity;
   }
   world->settled = false;
-  world->time += (double)dt;
   world->counts.substeps++;
   world->profile.substeps++;
 }

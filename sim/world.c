@@ -149,6 +149,7 @@ static bool start(SimWorld *world, SimError *error) {
   if (!sim_world_reserve(world, error)) return false;
   if (any_colour(&world->def) && !sim_particles_colour(&world->particles, sim_water_colour))
     return sim_fail(error, "out of memory");
+  if (!sim_motion_reset(world)) return sim_fail(error, "out of memory");
   for (int32_t b = 0; b < world->def.block_count; b++)
     if (sim_fill_block(world, &world->blocks[b], true, error) < 0) return false;
   for (int32_t d = 0; d < world->def.drop_count; d++)
@@ -180,13 +181,11 @@ SimWorld *sim_world_create(const SimWorldDef *def, SimError *error) {
   world->boundary.clearance = def->particle_radius;
   world->boundary.body_count = def->obstacle_count;
   world->boundary.bodies = world->bodies;
-  if (!sim_emitters_make(&world->emitters, world->emitter_defs, def->emitter_count, world->cubic.spacing,
-                         world->cubic.h)) {
-    sim_fail(error, "out of memory");
-    sim_world_destroy(world);
-    return NULL;
-  }
-  if (!start(world, error)) {
+  bool ok = sim_emitters_make(&world->emitters, world->emitter_defs, def->emitter_count, world->cubic.spacing,
+                              world->cubic.h) &&
+            sim_motion_create(world);
+  if (!ok) sim_fail(error, "out of memory");
+  if (!ok || !start(world, error)) {
     sim_world_destroy(world);
     return NULL;
   }
@@ -203,6 +202,7 @@ void sim_world_destroy(SimWorld *world) {
   for (int k = 0; k < 3; k++) sim_release(world->fill_position[k]);
   sim_emitters_free(&world->emitters);
   sim_release(world->gone);
+  sim_motion_destroy(world);
   sim_release(world->blocks);
   sim_release(world->drops);
   sim_release(world->emitter_defs);
@@ -233,7 +233,19 @@ static double longest_substep(const SimWorld *world) {
   if (world->def.time_step > 0) longest = fmin(longest, (double)world->def.time_step);
   double speed = (double)fmaxf(sim_largest_speed(world, world->particles.now.velocity), sim_emit_speed(world, longest)) + pull * longest;
   double cfl = speed > 0 ? (double)world->def.cfl * spacing / speed : longest;
-  return fmin(longest, cfl);
+  return sim_motion_longest(world, fmin(longest, cfl));
+}
+
+// One substep until the time `end`: of bodies and water, then of what comes and goes.
+static bool substep(SimWorld *world, double end, SimError *error) {
+  if (!sim_motion_begin(world, end)) return sim_fail(error, "out of memory");
+  if (!world->method->substep(world, (float)(end - world->time), error) || !sim_motion_end(world, end, error)) {
+    sim_motion_cancel(world);
+    return false;
+  }
+  sim_motion_commit(world);
+  world->time = end;
+  return sim_swallow(world, error) && sim_emit(world, error);
 }
 
 bool sim_world_advance(SimWorld *world, double duration, SimError *error) {
@@ -247,18 +259,14 @@ bool sim_world_advance(SimWorld *world, double duration, SimError *error) {
   for (double rest = duration; rest > 0 && !world->failed;) {
     double substeps = ceil(rest / longest_substep(world) - 1e-6);
     double dt = substeps > 1 ? rest / substeps : rest;
-    world->failed = !world->method->substep(world, (float)dt, &world->failure) ||
-                    !sim_swallow(world, &world->failure) || !sim_emit(world, &world->failure);
+    world->failed = !substep(world, substeps > 1 ? end - (rest - dt) : end, &world->failure);
     world->last_dt = dt;
     rest = substeps > 1 ? rest - dt : 0;
   }
   world->push_count = 0;
   // Always settled between calls, whether or not anyone looks: settling sorts, and the order decides how sums round.
   world->failed = world->failed || !sim_world_settle(world, &world->failure);
-  if (!world->failed) {
-    world->time = end;
-    world->advances++;
-  }
+  if (!world->failed) world->advances++;
   if (world->failed && error) *error = world->failure;
   return !world->failed;
 }

@@ -4,6 +4,7 @@
 #define LIDO_SIM_WORLD_H
 
 #include "sim/emitter.h"
+#include "sim/motion.h"
 #include "sim/solver.h"
 
 #define SIM_DEF_COOKIE 0x4c69646fu
@@ -18,6 +19,7 @@ struct SimWorld {
   SimObstacle *obstacles;      ///< with their present poses
   SimBody *bodies;
   SimMeshDistance **meshes;    ///< (obstacle_count), of the obstacles that are meshes; equal ones share one
+  SimMotionState motion;
   int32_t threads;
   const SimWide *wide;
   const SimMethod *method;

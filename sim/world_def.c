@@ -250,5 +250,8 @@ bool sim_def_check(const SimWorldDef *def, SimError *error) {
   if (!check_sources(def, error)) return false;
   for (int32_t b = 0; b < def->obstacle_count; b++)
     if (!check_obstacle(&def->obstacles[b], b, error)) return false;
-  return check_meshes(def, error);
+  if (!check_meshes(def, error)) return false;
+  for (int32_t b = 0; b < def->obstacle_count; b++)
+    if (!sim_motion_check(&def->obstacles[b], b, error)) return false;
+  return true;
 }

@@ -132,17 +132,19 @@ void WIDE(sim_pbf_correct)(int32_t begin, int32_t end, const void *context, doub
       sum_moves(step, true, own, index, lists->length[chunk], move);
     else
       sum_moves(step, false, own, index, lists->length[chunk], move);
+    SimF answer = wall * own[3];
     if (p->near[chunk]) {
       SimF solid[4];
       sim_load4(p->solid + 4 * (size_t)i, solid);
-      for (int k = 0; k < 3; k++) move[k] = move[k] + wall * own[3] * solid[k];
+      for (int k = 0; k < 3; k++) move[k] = move[k] + answer * solid[k];
     }
     for (int k = 0; k < 3; k++) to[k] = own[k] + move[k];
-    if (p->near[chunk]) WIDE(sim_wall_clamp)(step, i, own, move, to);
+    SimF gain[3] = {move[0], move[1], move[2]};
+    if (p->near[chunk]) WIDE(sim_wall_clamp)(step, i, answer, own, move, to, gain);
     SimF d2 = zero;
     for (int k = 0; k < 3; k++) {
       float *v = p->now.next_velocity[k] + i;
-      if (!step->stabilise) sim_store(v, sim_load(v) + move[k] * sim_f(step->inverse_dt));
+      if (!step->stabilise) sim_store(v, sim_load(v) + gain[k] * sim_f(step->inverse_dt));
       d2 = d2 + move[k] * move[k];
     }
     sim_store4(p->first + 4 * (size_t)i, to[0], to[1], to[2], zero);

@@ -59,6 +59,7 @@ static void bodies_solid(const SimStep *step, int32_t i, const SimF own[4], floa
     const float point[3] = {lane[0][k], lane[1][k], lane[2][k]};
     SimSolid found;
     sim_boundary_solid(step->boundary, near, point, &found);
+    if (step->reaction) sim_reaction_solid(step->reaction, i + k, &found);
     for (int a = 0; a < 3; a++) solid[a] = found.gradient[a];
     solid[3] = found.share;
   }
@@ -77,29 +78,47 @@ void WIDE(sim_wall_solid)(const SimStep *step, int32_t i, const SimF own[4], Sim
   }
 }
 
-static void clamp_to_bodies(const SimStep *step, int32_t i, SimF to[3]) {
+static void clamp_to_bodies(const SimStep *step, int32_t i, SimF answer, SimF to[3], SimF gain[3]) {
   const SimParticles *p = step->particles;
   SimF start[3];
   SimNear chosen;
-  float lane[3][SIM_LANES];
+  float place[3][SIM_LANES], gained[3][SIM_LANES], answers[SIM_LANES];
   for (int k = 0; k < 3; k++) start[k] = sim_load(p->now.position[k] + i);
   const SimNear *near = choose(step->boundary, start, to, p->count - i, &chosen);
-  for (int k = 0; k < 3; k++) sim_store(lane[k], to[k]);
-  for (int32_t k = 0; k < SIM_LANES && i + k < p->count; k++) {
-    float from[3], place[3];
-    for (int a = 0; a < 3; a++) from[a] = p->now.position[a][i + k], place[a] = lane[a][k];
-    sim_boundary_clamp(step->boundary, near, from, place);
-    for (int a = 0; a < 3; a++) lane[a][k] = place[a];
+  for (int k = 0; k < 3; k++) {
+    sim_store(place[k], to[k]);
+    sim_store(gained[k], gain[k]);
   }
-  for (int k = 0; k < 3; k++) to[k] = sim_load(lane[k]);
+  sim_store(answers, answer);
+  for (int32_t k = 0; k < SIM_LANES && i + k < p->count; k++) {
+    float from[3], free[3], at[3], v[3];
+    for (int a = 0; a < 3; a++) {
+      from[a] = p->now.position[a][i + k];
+      free[a] = at[a] = place[a][k];
+      v[a] = p->now.next_velocity[a][i + k] + gained[a][k] * step->inverse_dt;
+    }
+    int32_t clamped = sim_boundary_clamp(step->boundary, near, from, at);
+    float share = sim_step_clamp_share(step, v, free, at);
+    if (step->reaction) sim_reaction_corrected(step->reaction, i + k, answers[k], clamped, share, free, at);
+    for (int a = 0; a < 3; a++) {
+      place[a][k] = at[a];
+      if (at[a] != free[a]) gained[a][k] += share * (at[a] - free[a]);
+    }
+  }
+  for (int k = 0; k < 3; k++) {
+    to[k] = sim_load(place[k]);
+    gain[k] = sim_load(gained[k]);
+  }
 }
 
-void WIDE(sim_wall_clamp)(const SimStep *step, int32_t i, const SimF own[3], SimF move[3], SimF to[3]) {
+void WIDE(sim_wall_clamp)(const SimStep *step, int32_t i, SimF answer, const SimF own[3], SimF move[3], SimF to[3],
+                          SimF gain[3]) {
   const SimBoundary *b = step->boundary;
   SimF free[3] = {to[0], to[1], to[2]};
+  bool bodies = step->particles->near[i / SIM_CHUNK] & SIM_NEAR_BODY;
   // A NaN passes through and is caught by the world, not hidden: see sim_max and sim_min.
-  if (step->particles->near[i / SIM_CHUNK] & SIM_NEAR_BODY)
-    clamp_to_bodies(step, i, to);
+  if (bodies)
+    clamp_to_bodies(step, i, answer, to, gain);
   else
     for (int k = 0; k < 3; k++)
       to[k] = sim_max(sim_f(b->container.min[k] + b->clearance),
@@ -107,5 +126,6 @@ void WIDE(sim_wall_clamp)(const SimStep *step, int32_t i, const SimF own[3], Sim
   for (int k = 0; k < 3; k++) {
     SimF left = to[k] - own[k];
     move[k] = sim_select_less(to[k], free[k], left, sim_select_less(free[k], to[k], left, move[k]));
+    if (!bodies) gain[k] = gain[k] + (to[k] - free[k]);
   }
 }

@@ -3,7 +3,7 @@
 
     app    -> sim/sim.h, sim/frame.h, render/render.h, and its own headers
     render -> sim/frame.h, and its own headers
-    sim    -> its own headers, libm, OpenMP
+    sim    -> its own headers, libm, OpenMP, ODE and POSIX threads in rigid
     cJSON, GLFW, EGL, OSMesa, spng: app only; libepoxy: render and app/context_*
 
 Usage: check_layers.py ROOT    exits 1 and prints each breach as file:line: reason.
@@ -23,7 +23,7 @@ C_STANDARD = {
 }
 # What each layer may include besides the C standard library and its own headers.
 LAYERS = {
-    "sim": {"own": ("sim/",), "project": (), "system": (r"omp\.h", r"[ei]mmintrin\.h")},
+    "sim": {"own": ("sim/",), "project": (), "system": (r"omp\.h", r"[ei]mmintrin\.h", r"ode/.*", r"pthread\.h")},
     "render": {"own": ("render/",), "project": ("sim/frame.h",), "system": (r"epoxy/gl\.h", r"cglm/.*")},
     "app": {"own": ("app/",), "project": ("sim/sim.h", "sim/frame.h", "render/render.h"),
             "system": (r"cjson/.*", r"GLFW/.*", r"EGL/.*", r"GL/osmesa\.h", r"spng\.h", r"sys/.*", r"unistd\.h",
@@ -38,6 +38,8 @@ ONLY_IN = [  # (system header, files that may include it)
     (r"cjson/.*", r"app/"),
     (r"omp\.h", r"sim/parallel\."),
     (r"[ei]mmintrin\.h", r"sim/wide/simd\.h"),
+    (r"ode/.*", r"sim/rigid\."),
+    (r"pthread\.h", r"app/|sim/rigid\."),
 ]
 EXCEPT = {
     ("app/context_osmesa.c", "osmesa_functions.h"): "the list of OpenGL functions, made by the build",
@@ -92,10 +94,11 @@ def self_test():
         "sim/e.c": "#include <omp.h>", "render/a.c": '#include "sim/sim.h"', "render/b.c": '#include "app/app.h"',
         "render/c.c": "#include <GLFW/glfw3.h>", "app/a.c": '#include "sim/world.h"',
         "app/b.c": '#include "render/style.h"', "app/c.c": "#include <epoxy/gl.h>", "app/d.c": "#include <EGL/egl.h>",
-        "app/e.c": "#include <omp.h>",
+        "app/e.c": "#include <omp.h>", "sim/f.c": "#include <ode/ode.h>", "sim/g.c": "#include <pthread.h>",
     }
     fine = {
         "sim/ok.c": '#include "sim/sim.h"\n#include <math.h>', "sim/parallel.c": "#include <omp.h>",
+        "sim/rigid.c": "#include <ode/ode.h>\n#include <pthread.h>",
         "render/ok.c": '#include "sim/frame.h"\n#include <epoxy/gl.h>', "app/ok.c": '#include "render/render.h"',
         "app/context_x.c": "#include <epoxy/gl.h>",
     }

@@ -1,5 +1,7 @@
 #include "sim_test.h"
 
+#include "sim/obstacles.h"
+
 double test_random(uint64_t *state) {
   *state = *state * 6364136223846793005u + 1442695040888963407u;
   return (double)(*state >> 11) / 9007199254740992.0;
@@ -70,4 +72,15 @@ void test_inside_container(const SimFrame *frame) {
       if (!(x >= frame->container.min[k] && x <= frame->container.max[k]))
         fail_msg("frame %lld: particle %u is at %g along axis %d", (long long)frame->index, frame->id[i], (double)x, k);
     }
+}
+
+void test_outside_obstacles(const SimFrame *frame) {
+  for (int32_t b = 0; b < frame->obstacle_count; b++) {
+    SimBody body = sim_body_make(&frame->obstacles[b], NULL);
+    for (int32_t i = 0; i < frame->count; i++) {
+      float normal[3], gap = sim_body_distance(&body, &frame->position[3 * i], normal);
+      if (!(gap >= -0.2f * frame->particle_radius))
+        fail_msg("frame %lld: particle %u is %g m inside obstacle %d", (long long)frame->index, frame->id[i], (double)-gap, b);
+    }
+  }
 }

@@ -38,5 +38,7 @@ float *test_lattice(int nx, int ny, int nz, double spacing, double jitter, uint6
 
 /// Fails unless every particle of the frame is inside the container.
 void test_inside_container(const SimFrame *frame);
+/// Fails if a particle of the frame is inside an obstacle (none of them a mesh) by more than a tenth of a spacing.
+void test_outside_obstacles(const SimFrame *frame);
 
 #endif
