@@ -186,6 +186,10 @@ bool sim_world_set_gravity(SimWorld *world, const float gravity[3]);
 /// lie outside, stay empty. Returns the number of particles added, −1 and *error when it cannot.
 int32_t sim_world_pour(SimWorld *world, const SimBlockDef *block, SimError *error);
 
+/// Open or close an emitter; open, it still runs from its start until its stop only. All are open at the start and after a
+/// reset. false: no such emitter.
+bool sim_world_set_emitter(SimWorld *world, int32_t emitter, bool on);
+
 /// Where the draggable obstacle should be from now on; it goes there at no more than its max_speed, so that nothing
 /// tunnels. false: no such draggable obstacle, or not finite. Rotation NULL: as it is.
 bool sim_world_drag(SimWorld *world, int32_t obstacle, const float position[3], const float rotation[4]);
