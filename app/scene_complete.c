@@ -172,9 +172,6 @@ static bool check_fluid(const Check *check) {
   }
   int64_t count = scene_particle_count(scene);
   if (count > SIM_MAX_PARTICLES) return too_many(check, "fluid", (double)count);
-  if (scene->simulation.max_particles > 0 && count > scene->simulation.max_particles)
-    return fail_at(check, "simulation.max_particles", "must be at least the %" PRId64 " particles at the start, got %d",
-                   count, (int)scene->simulation.max_particles);
   // Water may touch. A tenth of a spacing does no harm; more would burst apart in the first step.
   float tolerance = 0.2f * scene->simulation.particle_radius;
   for (int i = 0; i < scene->fluid_count; i++)
