@@ -1,35 +1,21 @@
-// Mesh files through Assimp's C interface. It is handed the bytes of the one file; what the file refers to (materials,
-// textures, other files) is not there for it.
+// Mesh files: what the importer finds is scaled, joined and checked here. See mesh_import.h for the importer.
 #include "app/mesh_file.h"
 
-#include <assimp/cfileio.h>
-#include <assimp/cimport.h>
-#include <assimp/config.h>
-#include <assimp/postprocess.h>
-#include <assimp/scene.h>
-
-#include <errno.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
-#include <sys/stat.h>
 
-#include "app/text.h"
+#include "app/mesh_import.h"
 
 enum { MOST_REACH = 1000 }; // m, from the mesh's origin
 
 /// One reading at work.
 typedef struct Reading {
-  const char *path;
-  char *data; // of the file
-  size_t size;
   char *cause;
   bool *memory;
-  // The mesh as it grows
-  double *corner; // m, (3 per triangle, 3)
+  double *corner; // m, (corner_count, 3)
   int32_t *triangle;
   int32_t corner_count, vertex_count, triangle_count;
   float *vertex;
@@ -48,163 +34,26 @@ static bool out_of_memory(Reading *reading) {
   return fail(reading, "out of memory");
 }
 
-// ---- The file -------------------------------------------------------------------------------------------------------
+// ---- Corners in metres ------------------------------------------------------------------------------------------------
 
-static bool known_format(const char *path) {
-  const char *dot = strrchr(path, '.');
-  char formats[] = MESH_FILE_FORMATS;
-  for (char *rest = formats, *name; dot && (name = strtok_r(rest, ", ", &rest));)
-    if (strcasecmp(dot + 1, name) == 0) return true;
-  return false;
-}
-
-static bool read_bytes(Reading *reading) {
-  struct stat status;
-  if (!known_format(reading->path)) return fail(reading, "is not a mesh file: one of %s", MESH_FILE_FORMATS);
-  if (stat(reading->path, &status) != 0) return fail(reading, "%s", strerror(errno));
-  if (!S_ISREG(status.st_mode)) return fail(reading, "is not a file");
-  if (status.st_size > MESH_FILE_MOST_BYTES)
-    return fail(reading, "is larger than %d MiB, the most that a mesh file may have", MESH_FILE_MOST_BYTES >> 20);
-  FILE *file = fopen(reading->path, "rb");
-  if (!file) return fail(reading, "%s", strerror(errno));
-  // One byte more than allowed, so that a file that has grown is noticed; one more for a NUL, which text readers like.
-  size_t room = (size_t)status.st_size + 1;
-  reading->data = calloc(1, room + 1);
-  if (reading->data) reading->size = fread(reading->data, 1, room, file);
-  bool broken = ferror(file) != 0;
-  fclose(file);
-  if (!reading->data) return out_of_memory(reading);
-  if (broken) return fail(reading, "cannot be read");
-  if (reading->size == 0) return fail(reading, "the file is empty");
-  return reading->size < room || fail(reading, "changes while it is read");
-}
-
-// ---- What Assimp sees: one file in memory -----------------------------------------------------------------------------
-
-typedef struct Cursor {
-  const Reading *reading;
-  size_t at;
-} Cursor;
-
-static size_t cursor_read(struct aiFile *file, char *to, size_t size, size_t count) {
-  Cursor *cursor = (Cursor *)file->UserData;
-  size_t whole = size ? (cursor->reading->size - cursor->at) / size : 0;
-  if (count > whole) count = whole;
-  memcpy(to, cursor->reading->data + cursor->at, size * count);
-  cursor->at += size * count;
-  return count;
-}
-
-static size_t cursor_write(struct aiFile *file, const char *from, size_t size, size_t count) {
-  (void)file, (void)from, (void)size, (void)count;
-  return 0;
-}
-
-static size_t cursor_tell(struct aiFile *file) {
-  return ((const Cursor *)file->UserData)->at;
-}
-
-static size_t cursor_size(struct aiFile *file) {
-  return ((const Cursor *)file->UserData)->reading->size;
-}
-
-static enum aiReturn cursor_seek(struct aiFile *file, size_t offset, enum aiOrigin origin) {
-  Cursor *cursor = (Cursor *)file->UserData;
-  size_t size = cursor->reading->size;
-  size_t from = origin == aiOrigin_SET ? 0 : origin == aiOrigin_CUR ? cursor->at : size;
-  // From the end Assimp counts backwards.
-  if (origin == aiOrigin_END ? offset > size : offset > size - from) return aiReturn_FAILURE;
-  cursor->at = origin == aiOrigin_END ? size - offset : from + offset;
-  return aiReturn_SUCCESS;
-}
-
-static void cursor_flush(struct aiFile *file) {
-  (void)file;
-}
-
-static struct aiFile *open_cursor(struct aiFileIO *io, const char *path, const char *mode) {
-  const Reading *reading = (const Reading *)io->UserData;
-  if (strcmp(path, reading->path) != 0 || mode[0] != 'r') return NULL;
-  struct aiFile *file = calloc(1, sizeof *file);
-  Cursor *cursor = calloc(1, sizeof *cursor);
-  if (!file || !cursor) {
-    free(file);
-    free(cursor);
-    return NULL;
-  }
-  cursor->reading = reading;
-  *file = (struct aiFile){.ReadProc = cursor_read,
-                          .WriteProc = cursor_write,
-                          .TellProc = cursor_tell,
-                          .FileSizeProc = cursor_size,
-                          .SeekProc = cursor_seek,
-                          .FlushProc = cursor_flush,
-                          .UserData = (char *)cursor};
-  return file;
-}
-
-static void close_cursor(struct aiFileIO *io, struct aiFile *file) {
-  (void)io;
-  free(file->UserData);
-  free(file);
-}
-
-static const struct aiScene *import(Reading *reading) {
-  struct aiFileIO io = {.OpenProc = open_cursor, .CloseProc = close_cursor, .UserData = (char *)reading};
-  struct aiPropertyStore *properties = aiCreatePropertyStore();
-  if (!properties) return NULL;
-  // Places of corners and nothing else; points and lines are left out.
-  aiSetImportPropertyInteger(properties, AI_CONFIG_PP_RVC_FLAGS,
-                             aiComponent_NORMALS | aiComponent_TANGENTS_AND_BITANGENTS | aiComponent_COLORS |
-                                 aiComponent_TEXCOORDS | aiComponent_BONEWEIGHTS | aiComponent_ANIMATIONS |
-                                 aiComponent_TEXTURES | aiComponent_LIGHTS | aiComponent_CAMERAS);
-  aiSetImportPropertyInteger(properties, AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
-  const struct aiScene *scene = aiImportFileExWithProperties(
-      reading->path,
-      aiProcess_RemoveComponent | aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_PreTransformVertices, &io,
-      properties);
-  aiReleasePropertyStore(properties);
-  return scene;
-}
-
-// ---- From Assimp's meshes to corners ----------------------------------------------------------------------------------
-
-/// Triangles of all parts; −1 when a part is not made of sound triangles.
-static int64_t count_triangles(const struct aiScene *scene) {
-  int64_t count = 0;
-  for (unsigned m = 0; m < scene->mNumMeshes; m++) {
-    const struct aiMesh *mesh = scene->mMeshes[m];
-    for (unsigned f = 0; f < mesh->mNumFaces; f++) {
-      const struct aiFace *face = &mesh->mFaces[f];
-      if (face->mNumIndices != 3) return -1;
-      for (int k = 0; k < 3; k++)
-        if (face->mIndices[k] >= mesh->mNumVertices) return -1;
-    }
-    count += mesh->mNumFaces;
-  }
-  return count;
-}
-
-static bool take_corners(Reading *reading, const struct aiScene *scene, double scale) {
-  int64_t count = count_triangles(scene);
-  if (count < 0) return fail(reading, "has faces that are not triangles");
-  if (count == 0) return fail(reading, "holds no triangle");
-  if (count > MESH_FILE_MOST_TRIANGLES)
-    return fail(reading, "has %lld triangles, more than the limit of %d", (long long)count, MESH_FILE_MOST_TRIANGLES);
-  reading->corner = calloc((size_t)count * 9, sizeof *reading->corner);
+static bool scale_corners(Reading *reading, const float *corner, double scale) {
+  reading->corner = calloc((size_t)reading->corner_count * 3, sizeof *reading->corner);
   if (!reading->corner) return out_of_memory(reading);
-  double *to = reading->corner;
-  for (unsigned m = 0; m < scene->mNumMeshes; m++)
-    for (unsigned f = 0; f < scene->mMeshes[m]->mNumFaces; f++)
-      for (int k = 0; k < 3; k++, to += 3) {
-        const struct aiVector3D *v = &scene->mMeshes[m]->mVertices[scene->mMeshes[m]->mFaces[f].mIndices[k]];
-        to[0] = scale * (double)v->x;
-        to[1] = scale * (double)v->y;
-        to[2] = scale * (double)v->z;
-        if (!isfinite(to[0]) || !isfinite(to[1]) || !isfinite(to[2])) return fail(reading, "a corner is not finite");
-      }
-  reading->corner_count = (int32_t)(3 * count);
+  for (int32_t i = 0; i < 3 * reading->corner_count; i++) {
+    reading->corner[i] = scale * (double)corner[i];
+    if (!isfinite(reading->corner[i])) return fail(reading, "a corner is not finite");
+  }
   return true;
+}
+
+static bool read_corners(Reading *reading, const char *path, double scale) {
+  MeshImport import = {.cause = reading->cause, .cause_size = MESH_FILE_CAUSE_SIZE};
+  bool good = mesh_import(path, &import);
+  if (!good && import.out_of_memory) *reading->memory = false;
+  reading->corner_count = 3 * import.triangle_count;
+  good = good && scale_corners(reading, import.corner, scale);
+  free(import.corner);
+  return good;
 }
 
 static bool move_corners(Reading *reading, bool centre) {
@@ -324,27 +173,13 @@ static bool turn_outwards(Reading *reading) {
 
 // ---- All of it ----------------------------------------------------------------------------------------------------------
 
-static bool read_corners(Reading *reading, double scale) {
-  if (!read_bytes(reading)) return false;
-  const struct aiScene *scene = import(reading);
-  if (!scene) {
-    char reason[200];
-    const char *said = aiGetErrorString();
-    return fail(reading, "cannot be read: %s", text_printable(reason, sizeof reason, said ? said : "", 180));
-  }
-  bool taken = take_corners(reading, scene, scale);
-  aiReleaseImport(scene);
-  return taken;
-}
-
 bool mesh_file_read(const char *path, double scale, bool centre, SimMesh *mesh, char cause[MESH_FILE_CAUSE_SIZE],
                     bool *memory) {
-  Reading reading = {.path = path, .cause = cause, .memory = memory};
+  Reading reading = {.cause = cause, .memory = memory};
   *mesh = (SimMesh){0};
   *memory = true;
-  bool good = read_corners(&reading, scale) && move_corners(&reading, centre) && join_corners(&reading) &&
+  bool good = read_corners(&reading, path, scale) && move_corners(&reading, centre) && join_corners(&reading) &&
               check_closed(&reading) && turn_outwards(&reading);
-  free(reading.data);
   free(reading.corner);
   if (good) {
     *mesh = (SimMesh){reading.vertex_count, reading.triangle_count, reading.vertex, reading.triangle};

@@ -1,7 +1,7 @@
 // Triangle meshes from files: one closed surface, ready to be an obstacle.
 //
-// Files come from outside and are not trusted: their size is bounded, nothing but the file itself is read whatever it
-// refers to, and what comes out is checked before it is used.
+// Files come from outside and are not trusted: their size is bounded, a process of its own reads them, nothing but the
+// file itself is read whatever it refers to, and what comes out is checked before it is used.
 #ifndef LIDO_APP_MESH_FILE_H
 #define LIDO_APP_MESH_FILE_H
 
@@ -16,7 +16,7 @@ enum {
 };
 
 /// Formats that are read, as endings of file names: "obj, ply, …".
-#define MESH_FILE_FORMATS "obj, ply, stl, off, glb"
+#define MESH_FILE_FORMATS "obj, ply, stl, off, glb, dae, fbx, 3ds"
 
 /// Read the triangles of a mesh file. All parts become one; corners in the same place are joined, triangles without
 /// area dropped. `scale` goes from its lengths to metres; with `centre` the middle of its box becomes the origin.

@@ -232,7 +232,7 @@
 
 #define SCENE_MESH(F, O, L, V, S) \
   F(S, TEXT,      file,            "",         "",                 SCENE_REQUIRED, \
-    "Relative to the scene's file: OBJ, PLY, STL, OFF, GLB …; one closed surface, at most 64 MiB and 500000 triangles.") \
+    "Relative to the scene's file: OBJ, PLY, STL, OFF, GLB, DAE, FBX or 3DS; one closed surface, at most 64 MiB and 500000 triangles.") \
   F(S, NUMBER,    scale,           "",         "(0, 1000000]",     "1", \
     "From the file's lengths to metres.") \
   F(S, SWITCH,    centre,          "",         "",                 "true", \

@@ -36,7 +36,7 @@ ONLY_IN = [  # (system header, files that may include it)
     (r"GL/osmesa\.h", r"app/context_osmesa\."),
     (r"GLFW/.*", r"app/context_glfw\.|app/window\.|app/window_"),
     (r"cjson/.*", r"app/"),
-    (r"assimp/.*", r"app/mesh_file\."),
+    (r"assimp/.*", r"app/mesh_import\."),
     (r"omp\.h", r"sim/parallel\."),
     (r"[ei]mmintrin\.h", r"sim/wide/simd\.h"),
 ]
