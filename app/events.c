@@ -159,7 +159,8 @@ static bool drag_world(const Scene *scene, int index, double end, Interval inter
   float position[3], rotation[4];
   events_drag(scene, event->drag.obstacle.index, end, position, rotation);
   if (sim_world_drag(world, event->drag.obstacle.index, position, rotation)) return true;
-  return app_fail(error, APP_FAILED, "events[%d]: the drag was refused: not a draggable obstacle, or not finite", index);
+  return app_fail(error, APP_FAILED, "events[%d]: the drag was refused: not a draggable obstacle, or not finite",
+                  index);
 }
 
 static bool switch_world(const Scene *scene, int index, Interval interval, SimWorld *world, AppError *error) {

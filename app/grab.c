@@ -94,7 +94,8 @@ static double meet_cylinder(const Ray *ray, double radius, double height) {
 
 static double meet_capsule(const Ray *ray, double radius, double height) {
   double middle = fmax(height / 2 - radius, 0);
-  return fmin(meet_cylinder(ray, radius, 2 * middle), fmin(meet_ball(ray, middle, radius), meet_ball(ray, -middle, radius)));
+  return fmin(meet_cylinder(ray, radius, 2 * middle),
+              fmin(meet_ball(ray, middle, radius), meet_ball(ray, -middle, radius)));
 }
 
 static double meet_stairs(const Ray *ray, const float size[3], int32_t steps) {
@@ -131,8 +132,8 @@ static double meet_mesh(const Ray *ray, const SimMesh *mesh) {
   double nearest = INFINITY;
   for (int32_t t = 0; mesh && t < mesh->triangle_count; t++) {
     const int32_t *corner = mesh->triangle + 3 * (size_t)t;
-    nearest = fmin(nearest, meet_triangle(ray, mesh->vertex + 3 * (size_t)corner[0], mesh->vertex + 3 * (size_t)corner[1],
-                                          mesh->vertex + 3 * (size_t)corner[2]));
+    nearest = fmin(nearest, meet_triangle(ray, mesh->vertex + 3 * (size_t)corner[0],
+                                          mesh->vertex + 3 * (size_t)corner[1], mesh->vertex + 3 * (size_t)corner[2]));
   }
   return nearest;
 }

@@ -16,19 +16,19 @@ bool grab_ray_meets(const SimObstacle *body, const float origin[3], const float 
 /// Bodies of a frame, and which of them can be dragged.
 typedef struct GrabBodies {
   int32_t count;
-  const SimObstacle *bodies;   ///< (count)
-  const SimObstacleDef *defs;  ///< (count), of the same bodies: for their motion
+  const SimObstacle *bodies;  ///< (count)
+  const SimObstacleDef *defs; ///< (count), of the same bodies: for their motion
 } GrabBodies;
 
 /// The draggable body that the ray meets first; −1 when it meets none, or another body before.
 int32_t grab_pick(const GrabBodies *bodies, const float origin[3], const float direction[3]);
 
 typedef struct Grab {
-  bool holds;         ///< a body is in the hand
-  bool moved;         ///< `target` has not been taken yet
-  int32_t body;       ///< which one, as long as it holds or has moved
-  float target[3];    ///< m, where its centre is wanted
-  float x, y;         ///< pixels, of the cursor
+  bool holds;      ///< a body is in the hand
+  bool moved;      ///< `target` has not been taken yet
+  int32_t body;    ///< which one, as long as it holds or has moved
+  float target[3]; ///< m, where its centre is wanted
+  float x, y;      ///< pixels, of the cursor
 } Grab;
 
 /// Grasp what lies under the cursor of a width × height picture. false, and nothing is held: no draggable body.

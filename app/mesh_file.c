@@ -142,7 +142,8 @@ static bool check_closed(Reading *reading) {
     open += balance != 0;
   }
   free(edges);
-  return open == 0 || fail(reading, "is not closed: at %d of its edges triangles are missing or face the other way", open);
+  return open == 0 ||
+         fail(reading, "is not closed: at %d of its edges triangles are missing or face the other way", open);
 }
 
 /// Six times the volume, positive where normals point outwards.

@@ -9,11 +9,7 @@
 
 #include "sim/sim.h"
 
-enum {
-  MESH_FILE_MOST_BYTES = 64 * 1024 * 1024,
-  MESH_FILE_MOST_TRIANGLES = 500000,
-  MESH_FILE_CAUSE_SIZE = 320
-};
+enum { MESH_FILE_MOST_BYTES = 64 * 1024 * 1024, MESH_FILE_MOST_TRIANGLES = 500000, MESH_FILE_CAUSE_SIZE = 320 };
 
 /// Formats that are read, as endings of file names: "obj, ply, …".
 #define MESH_FILE_FORMATS "obj, ply, stl, off, glb, dae, fbx, 3ds"

@@ -168,10 +168,10 @@ static const struct aiScene *import_scene(Reading *reading) {
                                  aiComponent_TEXCOORDS | aiComponent_BONEWEIGHTS | aiComponent_ANIMATIONS |
                                  aiComponent_TEXTURES | aiComponent_LIGHTS | aiComponent_CAMERAS);
   aiSetImportPropertyInteger(properties, AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
-  const struct aiScene *scene = aiImportFileExWithProperties(
-      reading->path,
-      aiProcess_RemoveComponent | aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_PreTransformVertices, &io,
-      properties);
+  const struct aiScene *scene = aiImportFileExWithProperties(reading->path,
+                                                             aiProcess_RemoveComponent | aiProcess_Triangulate |
+                                                                 aiProcess_SortByPType | aiProcess_PreTransformVertices,
+                                                             &io, properties);
   aiReleasePropertyStore(properties);
   return scene;
 }

@@ -8,7 +8,7 @@
 #include <stdint.h>
 
 typedef struct MeshImport {
-  char *cause;            ///< (cause_size), the caller's: why it failed, in one line
+  char *cause; ///< (cause_size), the caller's: why it failed, in one line
   size_t cause_size;
   bool out_of_memory;     ///< that is why
   int32_t triangle_count; ///< [1, MESH_FILE_MOST_TRIANGLES]

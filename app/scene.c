@@ -65,7 +65,8 @@ static char *read_file(const char *path, size_t *size, AppError *error) {
 static bool load_tree(const SceneSource *source, cJSON *root, Scene *scene) {
   for (int i = 0; cJSON_IsObject(root) && i < source->set_count; i++)
     if (!scene_apply_set(source, root, source->sets[i])) return false;
-  return scene_parse(source, root, scene) && scene_complete(source, root, scene) && scene_defs_make(source, root, scene);
+  return scene_parse(source, root, scene) && scene_complete(source, root, scene) &&
+         scene_defs_make(source, root, scene);
 }
 
 bool scene_load_text(Scene *scene, const char *name, const char *text, size_t size, const char *const *sets,

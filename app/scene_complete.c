@@ -338,7 +338,8 @@ static void place_camera(Scene *scene) {
 
 bool scene_complete(const SceneSource *source, const cJSON *root, Scene *scene) {
   Check check = {source, root, scene};
-  if (!check_container(&check) || !check_fluid(&check) || !check_sinks(&check) || !check_obstacles(&check)) return false;
+  if (!check_container(&check) || !check_fluid(&check) || !check_sinks(&check) || !check_obstacles(&check))
+    return false;
   if (!scene_resolve_names(source, root, scene)) return false;
   place_camera(scene);
   if (distance(scene->camera.eye, scene->camera.target) <= 0)

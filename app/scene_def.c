@@ -11,10 +11,10 @@
 #define PI 3.14159265358979323846
 
 static const SimSolver solvers[] = {[SOLVER_PBF] = SIM_SOLVER_PBF, [SOLVER_SPH] = SIM_SOLVER_SPH};
-static const SimContainerShape container_shapes[] = {[CONTAINER_BOX] = SIM_CONTAINER_BOX,
-                                                     [CONTAINER_GLASS] = SIM_CONTAINER_GLASS};
-static const SimEmitterShape emitter_shapes[] = {[EMITTER_DISC] = SIM_EMITTER_DISC,
-                                                 [EMITTER_RECTANGLE] = SIM_EMITTER_RECTANGLE};
+static const SimContainerShape container_shapes[] = {
+    [CONTAINER_BOX] = SIM_CONTAINER_BOX, [CONTAINER_GLASS] = SIM_CONTAINER_GLASS};
+static const SimEmitterShape emitter_shapes[] = {
+    [EMITTER_DISC] = SIM_EMITTER_DISC, [EMITTER_RECTANGLE] = SIM_EMITTER_RECTANGLE};
 static const SimMotion motions[] = {[MOTION_STATIC] = SIM_STATIC,
                                     [MOTION_SCRIPTED] = SIM_SCRIPTED,
                                     [MOTION_DRAGGABLE] = SIM_DRAGGABLE,
@@ -323,6 +323,5 @@ void scene_tell_left_out(const Scene *scene, const SimCounts *counts) {
   char path[200];
   if (counts->left_out <= 0) return;
   fprintf(stderr, "lido: %s: %d particle%s at the start left out, in an obstacle or outside the container\n",
-          text_printable(path, sizeof path, scene->path, 180), (int)counts->left_out,
-          counts->left_out == 1 ? "" : "s");
+          text_printable(path, sizeof path, scene->path, 180), (int)counts->left_out, counts->left_out == 1 ? "" : "s");
 }

@@ -55,8 +55,8 @@ static bool resolve(const Names *names, const char *keys, SceneReference *refere
   if (reference->index >= names->count)
     return scene_fail_at(names->source, names->root, keys, "there is no %s.%d, the list has %d items", names->list,
                          (int)reference->index, names->count);
-  return names->names[reference->index] || scene_fail_at(names->source, names->root, keys, "%s.%d is no %s", names->list,
-                                                         (int)reference->index, names->kind);
+  return names->names[reference->index] || scene_fail_at(names->source, names->root, keys, "%s.%d is no %s",
+                                                         names->list, (int)reference->index, names->kind);
 }
 
 static bool resolve_all(const Names *obstacles, const Names *emitters, Scene *scene) {

@@ -59,7 +59,8 @@ void scene_choices(const SceneField *field, SceneChoices *choices) {
     return;
   }
   snprintf(choices->text, sizeof choices->text, "%s", field->range);
-  for (char *rest = choices->text, *name; (name = strtok_r(rest, " |", &rest));) choices->names[choices->count++] = name;
+  for (char *rest = choices->text, *name; (name = strtok_r(rest, " |", &rest));)
+    choices->names[choices->count++] = name;
   choices->with_later = choices->count;
 }
 

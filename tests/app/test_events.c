@@ -301,8 +301,8 @@ static void a_shake_is_made_of_tilts(void **state) {
                      "{\"type\": \"tilt\", \"time\": 1.75, \"duration\": 0.25, \"gravity\": [0, -9.81, 0]}]}");
   const struct {
     double time, x, y;
-  } truth[] = {{0.5, 0, -9.81}, {1.125, 1.5, -9.575}, {1.25, 3, -9.34}, {1.5, 0, -9.34}, {1.75, -3, -9.34}, {2, 0, -9.81},
-               {60, 0, -9.81}};
+  } truth[] = {{0.5, 0, -9.81},   {1.125, 1.5, -9.575}, {1.25, 3, -9.34}, {1.5, 0, -9.34},
+               {1.75, -3, -9.34}, {2, 0, -9.81},        {60, 0, -9.81}};
   for (size_t i = 0; i < sizeof truth / sizeof *truth; i++) {
     float gravity[3];
     events_gravity(&scene, truth[i].time, gravity);
@@ -316,13 +316,15 @@ static void a_shake_is_made_of_tilts(void **state) {
 // ---- Drag -------------------------------------------------------------------------------------------------------------
 
 #define BALLS                                                                                                          \
-  "\"obstacles\": [{\"type\": \"sphere\", \"radius\": 0.1, \"position\": [0.5, 0.5, 0.5]},"                              \
-  "{\"type\": \"sphere\", \"name\": \"ball\", \"radius\": 0.1, \"position\": [1, 0.5, 0.5], \"motion\": \"draggable\","    \
+  "\"obstacles\": [{\"type\": \"sphere\", \"radius\": 0.1, \"position\": [0.5, 0.5, 0.5]},"                            \
+  "{\"type\": \"sphere\", \"name\": \"ball\", \"radius\": 0.1, \"position\": [1, 0.5, 0.5], \"motion\": "              \
+  "\"draggable\","                                                                                                     \
   " \"max_speed\": 100}]"
 #define DRAGS                                                                                                          \
   "{\"version\": 1, " BALLS ", \"events\": ["                                                                          \
   "{\"type\": \"drag\", \"obstacle\": \"ball\", \"time\": 1, \"duration\": 2, \"position\": [2, 0.5, 0.5]},"           \
-  "{\"type\": \"drag\", \"obstacle\": 1, \"time\": 2, \"duration\": 1, \"position\": [1.5, 1, 0.5], \"rotation\": [0, 90, " \
+  "{\"type\": \"drag\", \"obstacle\": 1, \"time\": 2, \"duration\": 1, \"position\": [1.5, 1, 0.5], \"rotation\": "    \
+  "[0, 90, "                                                                                                           \
   "0]},"                                                                                                               \
   "{\"type\": \"drag\", \"obstacle\": 1, \"time\": 4, \"position\": [0.25, 0.25, 0.25], \"rotation\": [0, 0, 0]}]}"
 
@@ -332,15 +334,9 @@ static void a_drag_moves_evenly_from_where_the_last_one_came_to(void **state) {
   const struct {
     double time;
     float want[3], degrees; // about y
-  } truth[] = {{0, {1, 0.5f, 0.5f}, 0},
-               {1, {1, 0.5f, 0.5f}, 0},
-               {1.5, {1.25f, 0.5f, 0.5f}, 0},
-               {2, {1.5f, 0.5f, 0.5f}, 0},
-               {2.5, {1.5f, 0.75f, 0.5f}, 45},
-               {3, {1.5f, 1, 0.5f}, 90},
-               {3.9, {1.5f, 1, 0.5f}, 90},
-               {4, {0.25f, 0.25f, 0.25f}, 0},
-               {50, {0.25f, 0.25f, 0.25f}, 0}};
+  } truth[] = {{0, {1, 0.5f, 0.5f}, 0},    {1, {1, 0.5f, 0.5f}, 0},        {1.5, {1.25f, 0.5f, 0.5f}, 0},
+               {2, {1.5f, 0.5f, 0.5f}, 0}, {2.5, {1.5f, 0.75f, 0.5f}, 45}, {3, {1.5f, 1, 0.5f}, 90},
+               {3.9, {1.5f, 1, 0.5f}, 90}, {4, {0.25f, 0.25f, 0.25f}, 0},  {50, {0.25f, 0.25f, 0.25f}, 0}};
   for (size_t i = 0; i < sizeof truth / sizeof *truth; i++) {
     float position[3], rotation[4];
     events_drag(&scene, 1, truth[i].time, position, rotation);
@@ -401,12 +397,13 @@ static void after_a_drag_the_hand_has_the_body(void **state) {
 
 static void emitters_run_while_they_are_on(void **state) {
   (void)state;
-  Scene scene = load("{\"version\": 1, \"simulation\": {\"particle_radius\": 0.025, \"gravity\": [0, 0, 0]}, \"fluid\": ["
-                     "{\"type\": \"block\", \"min\": [0, 0, 0], \"max\": [0.1, 0.1, 0.1]},"
-                     "{\"type\": \"emitter\", \"name\": \"tap\", \"diameter\": 0.2, \"position\": [0.5, 1, 0.5],"
-                     " \"direction\": [1, 0, 0], \"speed\": 1}],"
-                     " \"events\": [{\"type\": \"emitter\", \"emitter\": \"tap\", \"time\": 0.2, \"on\": false},"
-                     " {\"type\": \"emitter\", \"emitter\": 1, \"time\": 0.6, \"on\": true}]}");
+  Scene scene =
+      load("{\"version\": 1, \"simulation\": {\"particle_radius\": 0.025, \"gravity\": [0, 0, 0]}, \"fluid\": ["
+           "{\"type\": \"block\", \"min\": [0, 0, 0], \"max\": [0.1, 0.1, 0.1]},"
+           "{\"type\": \"emitter\", \"name\": \"tap\", \"diameter\": 0.2, \"position\": [0.5, 1, 0.5],"
+           " \"direction\": [1, 0, 0], \"speed\": 1}],"
+           " \"events\": [{\"type\": \"emitter\", \"emitter\": \"tap\", \"time\": 0.2, \"on\": false},"
+           " {\"type\": \"emitter\", \"emitter\": 1, \"time\": 0.6, \"on\": true}]}");
   SimWorld *world = make_world(&scene);
   int64_t emitted[21];
   for (int n = 0; n < 20; n++) {

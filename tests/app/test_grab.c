@@ -36,7 +36,8 @@ static void assert_meets(const SimObstacle *body, const float origin[3], const f
   float distance;
   bool meets = grab_ray_meets(body, origin, direction, &distance);
   if (meets != isfinite(want)) fail_msg("shape %d: meets is %d", (int)body->shape, meets);
-  if (meets && !(fabs(distance - want) < 1e-5)) fail_msg("shape %d: got %g, want %g", (int)body->shape, (double)distance, want);
+  if (meets && !(fabs(distance - want) < 1e-5))
+    fail_msg("shape %d: got %g, want %g", (int)body->shape, (double)distance, want);
 }
 
 static void distances_are_those_on_paper(void **state) {
@@ -46,17 +47,33 @@ static void distances_are_those_on_paper(void **state) {
     float origin[3], direction[3];
     double want;
   } rows[] = {
-      {0, {0, 0, 5}, {0, 0, -1}, 3.5},      {0, {0, 0, 5}, {0, 0, 1}, INFINITY},  {0, {0.6f, 0, 5}, {0, 0, -1}, INFINITY},
-      {0, {0, 0, 0}, {1, 0, 0}, 0},         {0, {-3, 0, 0}, {0.6f, 0, 0.8f}, INFINITY},
-      {1, {0, 0, 5}, {0, 0, -1}, 4.25},     {1, {0, 0.45f, 5}, {0, 0, -1}, 4.4},  {1, {0, 0.76f, 5}, {0, 0, -1}, INFINITY},
-      {2, {5, 0, 0}, {-1, 0, 0}, 4.5},      {2, {0.3f, 5, 0}, {0, -1, 0}, 4},     {2, {0.6f, 5, 0}, {0, -1, 0}, INFINITY},
+      {0, {0, 0, 5}, {0, 0, -1}, 3.5},
+      {0, {0, 0, 5}, {0, 0, 1}, INFINITY},
+      {0, {0.6f, 0, 5}, {0, 0, -1}, INFINITY},
+      {0, {0, 0, 0}, {1, 0, 0}, 0},
+      {0, {-3, 0, 0}, {0.6f, 0, 0.8f}, INFINITY},
+      {1, {0, 0, 5}, {0, 0, -1}, 4.25},
+      {1, {0, 0.45f, 5}, {0, 0, -1}, 4.4},
+      {1, {0, 0.76f, 5}, {0, 0, -1}, INFINITY},
+      {2, {5, 0, 0}, {-1, 0, 0}, 4.5},
+      {2, {0.3f, 5, 0}, {0, -1, 0}, 4},
+      {2, {0.6f, 5, 0}, {0, -1, 0}, INFINITY},
       {2, {5, 1.01f, 0}, {-1, 0, 0}, INFINITY},
-      {3, {5, 0.9f, 0}, {-1, 0, 0}, 4.5},   {3, {0, 5, 0}, {0, -1, 0}, 3.5},      {3, {0.3f, 5, 0}, {0, -1, 0}, 3.6},
-      {3, {5, 1.4f, 0}, {-1, 0, 0}, 4.7},   {4, {0, 0, -5}, {0, 0, 1}, 4.5},
+      {3, {5, 0.9f, 0}, {-1, 0, 0}, 4.5},
+      {3, {0, 5, 0}, {0, -1, 0}, 3.5},
+      {3, {0.3f, 5, 0}, {0, -1, 0}, 3.6},
+      {3, {5, 1.4f, 0}, {-1, 0, 0}, 4.7},
+      {4, {0, 0, -5}, {0, 0, 1}, 4.5},
       // Steps of 0.75 m by 0.5 m: over the first the ray falls further.
-      {5, {-1.4f, 5, 0}, {0, -1, 0}, 5.5},  {5, {1.4f, 5, 0}, {0, -1, 0}, 4},     {5, {-5, 0.75f, 0}, {1, 0, 0}, 5.75},
-      {5, {-5, -0.75f, 0}, {1, 0, 0}, 3.5}, {5, {5, 0.75f, 0}, {-1, 0, 0}, 3.5},  {5, {0, 0.75f, 3}, {0, 0, -1}, INFINITY},
-      {6, {0.1f, 0.2f, 5}, {0, 0, -1}, 4.5}, {6, {5, 0.1f, 0.2f}, {-1, 0, 0}, 4.5}, {6, {0.6f, 0, 5}, {0, 0, -1}, INFINITY},
+      {5, {-1.4f, 5, 0}, {0, -1, 0}, 5.5},
+      {5, {1.4f, 5, 0}, {0, -1, 0}, 4},
+      {5, {-5, 0.75f, 0}, {1, 0, 0}, 5.75},
+      {5, {-5, -0.75f, 0}, {1, 0, 0}, 3.5},
+      {5, {5, 0.75f, 0}, {-1, 0, 0}, 3.5},
+      {5, {0, 0.75f, 3}, {0, 0, -1}, INFINITY},
+      {6, {0.1f, 0.2f, 5}, {0, 0, -1}, 4.5},
+      {6, {5, 0.1f, 0.2f}, {-1, 0, 0}, 4.5},
+      {6, {0.6f, 0, 5}, {0, 0, -1}, INFINITY},
   };
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
     SimObstacle body = shapes[rows[i].shape];
@@ -142,7 +159,8 @@ static void rays_that_meet_end_on_the_surface(void **state) {
     SimObstacle body = shapes[s];
     body.rotation[3] = 1;
     for (int n = 0; n < 2000; n++) {
-      float origin[3] = {0, 0, 6}, direction[3] = {(float)(0.4 * random_share(&seed)), (float)(0.4 * random_share(&seed)), -1};
+      float origin[3] = {0, 0, 6},
+            direction[3] = {(float)(0.4 * random_share(&seed)), (float)(0.4 * random_share(&seed)), -1};
       float length = sqrtf(direction[0] * direction[0] + direction[1] * direction[1] + 1), distance;
       for (int k = 0; k < 3; k++) direction[k] /= length;
       if (!grab_ray_meets(&body, origin, direction, &distance)) continue;
@@ -170,7 +188,8 @@ typedef struct Row {
 
 static GrabBodies make_row(Row *row) {
   for (int i = 0; i < 3; i++) {
-    row->bodies[i] = (SimObstacle){.shape = SIM_SPHERE, .size = {1}, .position = {0, 0, 2.0f * (float)(i - 1)}, .rotation = {0, 0, 0, 1}};
+    row->bodies[i] = (SimObstacle){
+        .shape = SIM_SPHERE, .size = {1}, .position = {0, 0, 2.0f * (float)(i - 1)}, .rotation = {0, 0, 0, 1}};
     row->defs[i] = sim_default_obstacle_def();
   }
   row->defs[1].motion = SIM_DRAGGABLE;

@@ -150,9 +150,10 @@ static void pushes_and_gravity_reach_the_water(void **state) {
 
 static void a_drag_reaches_its_body(void **state) {
   (void)state;
-  Scene scene = load("{\"version\": 1, \"obstacles\": [{\"type\": \"box\", \"size\": [0.1, 0.1, 0.1], \"position\": [1, 1, 0.5]},"
-                     "{\"type\": \"box\", \"size\": [0.1, 0.1, 0.1], \"position\": [1, 0.5, 0.5], \"motion\": \"draggable\","
-                     " \"max_speed\": 6}]}");
+  Scene scene =
+      load("{\"version\": 1, \"obstacles\": [{\"type\": \"box\", \"size\": [0.1, 0.1, 0.1], \"position\": [1, 1, 0.5]},"
+           "{\"type\": \"box\", \"size\": [0.1, 0.1, 0.1], \"position\": [1, 0.5, 0.5], \"motion\": \"draggable\","
+           " \"max_speed\": 6}]}");
   Live *live = open_live(&scene, SIM_NEED_NOTHING);
   LiveInput input = {.drag = true, .body = 1, .position = {1.5f, 0.5f, 0.5f}};
   // 6 m/s is 0.1 m a frame: after five frames it is there, and stays without being told again.

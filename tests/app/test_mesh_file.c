@@ -128,10 +128,11 @@ static void other_formats_hold_the_same_box(void **state) {
   (void)state;
   static const char off[] = "OFF\n8 6 0\n0 0 0\n2 0 0\n2 4 0\n0 4 0\n0 0 6\n2 0 6\n2 4 6\n0 4 6\n"
                             "4 3 2 1 0\n4 4 5 6 7\n4 0 1 5 4\n4 2 3 7 6\n4 1 2 6 5\n4 0 4 7 3\n";
-  static const char ply[] = "ply\nformat ascii 1.0\nelement vertex 8\nproperty float x\nproperty float y\nproperty float z\n"
-                            "element face 6\nproperty list uchar int vertex_indices\nend_header\n"
-                            "0 0 0\n2 0 0\n2 4 0\n0 4 0\n0 0 6\n2 0 6\n2 4 6\n0 4 6\n"
-                            "4 3 2 1 0\n4 4 5 6 7\n4 0 1 5 4\n4 2 3 7 6\n4 1 2 6 5\n4 0 4 7 3\n";
+  static const char ply[] =
+      "ply\nformat ascii 1.0\nelement vertex 8\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face 6\nproperty list uchar int vertex_indices\nend_header\n"
+      "0 0 0\n2 0 0\n2 4 0\n0 4 0\n0 0 6\n2 0 6\n2 4 6\n0 4 6\n"
+      "4 3 2 1 0\n4 4 5 6 7\n4 0 1 5 4\n4 2 3 7 6\n4 1 2 6 5\n4 0 4 7 3\n";
   SimMesh mesh = read_mesh(put("box.OFF", off, ""), 1, true);
   check_box(&mesh, 1);
   // Its own triangles as STL: every corner three times and more.
@@ -160,8 +161,10 @@ static void what_is_no_closed_body_is_refused(void **state) {
   (void)state;
   check_refused(put("open.obj", corners, "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 3 4 8 7\nf 2 3 7 6\n"),
                 "is not closed: at 4 of its edges triangles are missing or face the other way");
-  check_refused(put("turned.obj", corners, "f 1 2 3 4\nf 5 6 7 8\nf 1 2 6 5\nf 3 4 8 7\nf 2 3 7 6\nf 1 5 8 4\n"), "is not closed");
-  check_refused(put("flat.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\n", "f 1 2 3\nf 3 2 1\nf 2 4 3\nf 3 4 2\n"), "no volume");
+  check_refused(put("turned.obj", corners, "f 1 2 3 4\nf 5 6 7 8\nf 1 2 6 5\nf 3 4 8 7\nf 2 3 7 6\nf 1 5 8 4\n"),
+                "is not closed");
+  check_refused(put("flat.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\n", "f 1 2 3\nf 3 2 1\nf 2 4 3\nf 3 4 2\n"),
+                "no volume");
   check_refused(put("one.obj", corners, "f 1 2 3\n"), "fewer than four triangles");
   check_refused(put("lines.obj", corners, "l 1 2\n"), "");
   check_refused(put("corners.obj", corners, ""), "");
@@ -183,10 +186,12 @@ static void what_is_no_mesh_is_refused(void **state) {
   check_refused(pipe_path, "is not a file");
   check_refused(put("text.glb", "this is no glTF", ""), "");
   check_refused(put("text.stl", "this is no STL", ""), "");
-  check_refused(put("huge.ply", "ply\nformat ascii 1.0\nelement vertex 4000000000\nproperty float x\nend_header\n", "1\n"), "");
+  check_refused(
+      put("huge.ply", "ply\nformat ascii 1.0\nelement vertex 4000000000\nproperty float x\nend_header\n", "1\n"), "");
   check_refused(put("far.obj", "v 0 0 0\nv 1e5 0 0\nv 0 1 0\nv 0 0 1\n", "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n"),
                 "reaches 50000 m from its origin, the most is 1000 m");
-  check_refused(put("infinite.obj", "v 0 0 0\nv 1e50 0 0\nv 0 1 0\nv 0 0 1\n", "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n"), "");
+  check_refused(put("infinite.obj", "v 0 0 0\nv 1e50 0 0\nv 0 1 0\nv 0 0 1\n", "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n"),
+                "");
   check_refused(put("outside.obj", corners, "f 1 2 99\nf 1 2 3\nf 1 4 3\nf 1 2 4\n"), "");
 }
 
@@ -259,7 +264,10 @@ static void a_scene_finds_the_mesh_beside_it(void **state) {
   check_box(def.obstacles[0].body.mesh, 0.1);
   scene_free(&scene);
   LidoRun run = {0};
-  path = put("wrong.json", "{\"version\": 1, \"obstacles\": [\n{\"type\": \"mesh\", \"file\": \"nowhere.obj\", \"position\": [0, 0, 0]}]}", "");
+  path = put(
+      "wrong.json",
+      "{\"version\": 1, \"obstacles\": [\n{\"type\": \"mesh\", \"file\": \"nowhere.obj\", \"position\": [0, 0, 0]}]}",
+      "");
   LIDO(&run, "check", path);
   check_said(&run, 2, "wrong.json:2: obstacles.0.file: nowhere.obj: No such file or directory");
 }

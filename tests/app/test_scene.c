@@ -100,23 +100,31 @@ static const char *const moving = //
     "\"container\": {\"shape\": \"glass\", \"min\": [-1, 0, -1], \"max\": [1, 2, 1], \"friction\": 0.5},\n"
     "\"fluid\": [\n"
     "  {\"type\": \"emitter\", \"diameter\": 0.25, \"position\": [0, 1.5, 0], \"direction\": [0, -3, 0]},\n"
-    "  {\"type\": \"drop\", \"centre\": [0, 1, 0], \"radius\": 0.25, \"velocity\": [0, -2, 0], \"colour\": [0, 0.5, 1]},\n"
+    "  {\"type\": \"drop\", \"centre\": [0, 1, 0], \"radius\": 0.25, \"velocity\": [0, -2, 0], \"colour\": [0, 0.5, "
+    "1]},\n"
     "  {\"type\": \"block\", \"min\": [-0.5, 0, -0.5], \"max\": [0.5, 0.5, 0.5]},\n"
-    "  {\"type\": \"emitter\", \"name\": \"wide\", \"shape\": \"rectangle\", \"size\": [0.5, 0.25], \"position\": [0.25, 0, 0],\n"
-    "   \"direction\": [0, 0, 2], \"speed\": 3, \"start\": 1, \"stop\": 2.5, \"colour\": [1, 0, 0], \"obstacle\": \"ball\"}],\n"
+    "  {\"type\": \"emitter\", \"name\": \"wide\", \"shape\": \"rectangle\", \"size\": [0.5, 0.25], \"position\": "
+    "[0.25, 0, 0],\n"
+    "   \"direction\": [0, 0, 2], \"speed\": 3, \"start\": 1, \"stop\": 2.5, \"colour\": [1, 0, 0], \"obstacle\": "
+    "\"ball\"}],\n"
     "\"sinks\": [{\"min\": [0.5, 0, 0.5], \"max\": [1, 0.5, 1]}],\n"
     "\"obstacles\": [\n"
-    "  {\"type\": \"capsule\", \"radius\": 0.125, \"height\": 0.5, \"position\": [0, 1, 0], \"motion\": \"scripted\", \"friction\": "
+    "  {\"type\": \"capsule\", \"radius\": 0.125, \"height\": 0.5, \"position\": [0, 1, 0], \"motion\": \"scripted\", "
+    "\"friction\": "
     "0.25,\n"
-    "   \"keys\": [{\"time\": 1, \"position\": [0, 1, 0]}, {\"time\": 2, \"position\": [1, 1, 0], \"rotation\": [90, 0, 0]}],\n"
+    "   \"keys\": [{\"time\": 1, \"position\": [0, 1, 0]}, {\"time\": 2, \"position\": [1, 1, 0], \"rotation\": [90, "
+    "0, 0]}],\n"
     "   \"repeat\": true, \"stroke\": [0, 0.5, 0], \"period\": 4, \"start\": 3},\n"
     "  {\"type\": \"stairs\", \"size\": [1, 0.5, 0.25], \"steps\": 5, \"position\": [0, 0.25, 0]},\n"
-    "  {\"type\": \"sphere\", \"name\": \"ball\", \"radius\": 0.25, \"position\": [0, 0.5, 0], \"motion\": \"draggable\", "
+    "  {\"type\": \"sphere\", \"name\": \"ball\", \"radius\": 0.25, \"position\": [0, 0.5, 0], \"motion\": "
+    "\"draggable\", "
     "\"max_speed\": 2},\n"
-    "  {\"type\": \"box\", \"size\": [1, 1, 1], \"position\": [0, 0.5, 0], \"motion\": \"floating\", \"density\": 250}],\n"
+    "  {\"type\": \"box\", \"size\": [1, 1, 1], \"position\": [0, 0.5, 0], \"motion\": \"floating\", \"density\": "
+    "250}],\n"
     "\"events\": [{\"type\": \"drag\", \"obstacle\": \"ball\", \"position\": [0.5, 0.5, 0]},\n"
     "  {\"type\": \"drag\", \"obstacle\": 2, \"position\": [0, 0.5, 0], \"rotation\": [0, 90, 0]},\n"
-    "  {\"type\": \"emitter\", \"emitter\": \"wide\", \"on\": false}, {\"type\": \"emitter\", \"emitter\": 0, \"on\": true}]}\n";
+    "  {\"type\": \"emitter\", \"emitter\": \"wide\", \"on\": false}, {\"type\": \"emitter\", \"emitter\": 0, \"on\": "
+    "true}]}\n";
 
 static void test_world_def_holds_the_method(void **state) {
   (void)state;
@@ -171,11 +179,16 @@ static void test_emitters_are_turned_to_their_direction(void **state) {
   const struct {
     const char *direction, *up;
     float along[3], first[3];
-  } rows[] = {{"[1, 0, 0]", "[0, 1, 0]", {1, 0, 0}, {0, 1, 0}},     {"[-5, 0, 0]", "[0, 1, 0]", {-1, 0, 0}, {0, 1, 0}},
-              {"[0, 0, 2]", "[0, 1, 0]", {0, 0, 1}, {0, 1, 0}},     {"[0, 0, -1]", "[1, 1, 0]", {0, 0, -1}, {0.70710678f, 0.70710678f, 0}},
-              {"[0, -1, 0]", "[0, 0, 7]", {0, -1, 0}, {0, 0, 1}},   {"[0, -1, 0]", "[0, 1, 0]", {0, -1, 0}, {1, 0, 0}},
-              {"[2, 0, 0]", "[1, 0, 0]", {1, 0, 0}, {0, 1, 0}},     {"[3, -4, 0]", "[0, 1, 0]", {0.6f, -0.8f, 0}, {0.8f, 0.6f, 0}},
-              {"[-1, 0, 0]", "[0, -1, 0]", {-1, 0, 0}, {0, -1, 0}}, {"[0, 1, 0]", "[-1, 0, 0]", {0, 1, 0}, {-1, 0, 0}}};
+  } rows[] = {{"[1, 0, 0]", "[0, 1, 0]", {1, 0, 0}, {0, 1, 0}},
+              {"[-5, 0, 0]", "[0, 1, 0]", {-1, 0, 0}, {0, 1, 0}},
+              {"[0, 0, 2]", "[0, 1, 0]", {0, 0, 1}, {0, 1, 0}},
+              {"[0, 0, -1]", "[1, 1, 0]", {0, 0, -1}, {0.70710678f, 0.70710678f, 0}},
+              {"[0, -1, 0]", "[0, 0, 7]", {0, -1, 0}, {0, 0, 1}},
+              {"[0, -1, 0]", "[0, 1, 0]", {0, -1, 0}, {1, 0, 0}},
+              {"[2, 0, 0]", "[1, 0, 0]", {1, 0, 0}, {0, 1, 0}},
+              {"[3, -4, 0]", "[0, 1, 0]", {0.6f, -0.8f, 0}, {0.8f, 0.6f, 0}},
+              {"[-1, 0, 0]", "[0, -1, 0]", {-1, 0, 0}, {0, -1, 0}},
+              {"[0, 1, 0]", "[-1, 0, 0]", {0, 1, 0}, {-1, 0, 0}}};
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
     char text[400];
     snprintf(text, sizeof text,
@@ -225,7 +238,8 @@ static void test_names_find_their_items(void **state) {
 
 static void test_defaults_of_bodies_are_the_simulators(void **state) {
   (void)state;
-  Scene scene = load("{\"version\": 1, \"obstacles\": [{\"type\": \"box\", \"size\": [1, 1, 1], \"position\": [0, 0, 0]}]}");
+  Scene scene =
+      load("{\"version\": 1, \"obstacles\": [{\"type\": \"box\", \"size\": [1, 1, 1], \"position\": [0, 0, 0]}]}");
   SimObstacleDef should = sim_default_obstacle_def();
   const SimObstacleDef *is = scene_world_def(&scene).obstacles;
   assert_int_equal(is->motion, should.motion);
@@ -485,8 +499,10 @@ static void test_what_comes_later_is_refused_by_name(void **state) {
 }
 
 #define OBSTACLE(text) "{\"version\": 1, \"obstacles\": [{\"type\": " text ", \"position\": [1, 1, 0.5]}]}"
-#define EMITTER(text) \
-  "{\"version\": 1, \"fluid\": [{\"type\": \"emitter\", \"direction\": [0, -1, 0], \"position\": [1, 1, 0.5]" text "}]}"
+#define EMITTER(text)                                                                                                  \
+  "{\"version\": 1, \"fluid\": [{\"type\": \"emitter\", \"direction\": [0, -1, 0], \"position\": [1, 1, 0.5]" text "}" \
+                                                                                                                   "]" \
+                                                                                                                   "}"
 
 static void test_bodies_must_make_sense(void **state) {
   (void)state;
@@ -496,9 +512,11 @@ static void test_bodies_must_make_sense(void **state) {
           "t.json:1: obstacles.0: a scripted obstacle needs keys or a stroke");
   refused(OBSTACLE("\"sphere\", \"radius\": 0.2, \"stroke\": [0, 0, 1]"),
           "t.json:1: obstacles.0: only a scripted obstacle has keys or a stroke");
-  refused(OBSTACLE("\"sphere\", \"radius\": 0.2, \"motion\": \"scripted\", \"keys\": [{\"time\": 1, \"position\": [0,0,0]},\n"
-                   "{\"position\": [0,0,0],\n\"time\": 1}]"),
-          "t.json:3: obstacles.0.keys.1.time: must be later than the key before it (1 s), got 1");
+  refused(
+      OBSTACLE(
+          "\"sphere\", \"radius\": 0.2, \"motion\": \"scripted\", \"keys\": [{\"time\": 1, \"position\": [0,0,0]},\n"
+          "{\"position\": [0,0,0],\n\"time\": 1}]"),
+      "t.json:3: obstacles.0.keys.1.time: must be later than the key before it (1 s), got 1");
   refused(OBSTACLE("\"stairs\", \"size\": [1, 1, 1], \"steps\": 0"),
           "t.json:1: obstacles.0.steps: must be in [1, 1000], got 0");
 }
@@ -529,8 +547,9 @@ static void test_emitters_and_drops_must_make_sense(void **state) {
   scene_free(&scene);
 }
 
-#define BALL(name) \
-  "{\"type\": \"sphere\", \"radius\": 0.1, \"position\": [1, 1, 0.5], \"motion\": \"draggable\", \"name\": \"" name "\"}"
+#define BALL(name)                                                                                                     \
+  "{\"type\": \"sphere\", \"radius\": 0.1, \"position\": [1, 1, 0.5], \"motion\": \"draggable\", \"name\": \"" name    \
+  "\"}"
 #define DRAG(what) "\"events\": [{\"type\": \"drag\", \"position\": [1, 1, 1], \"obstacle\": " what "}]}"
 
 static void test_names_must_stand_for_something(void **state) {
@@ -551,8 +570,10 @@ static void test_names_must_stand_for_something(void **state) {
              "t.json:1: events.0.obstacle: must be a name or a whole number that is not negative, got %s", wrong[i][1]);
     refused(text, message);
   }
-  refused("{\"version\": 1, \"obstacles\": [{\"type\": \"sphere\", \"radius\": 0.1, \"position\": [1, 1, 0.5]}],\n" DRAG("0"),
-          "t.json:2: events.0: obstacles.0 is not draggable");
+  refused(
+      "{\"version\": 1, \"obstacles\": [{\"type\": \"sphere\", \"radius\": 0.1, \"position\": [1, 1, 0.5]}],\n" DRAG(
+          "0"),
+      "t.json:2: events.0: obstacles.0 is not draggable");
   refused("{\"version\": 1, \"fluid\": [{\"min\": [0,0,0], \"max\": [1,1,1]}],\n"
           "\"events\": [{\"type\": \"emitter\", \"emitter\": 0, \"on\": true}]}",
           "t.json:2: events.0.emitter: fluid.0 is no emitter");

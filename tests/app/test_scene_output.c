@@ -4,8 +4,8 @@
 #include <math.h>
 #include <unistd.h>
 
-static const char *const shipped[] = {"dam_break", "double_dam_break", "glass",  "pontoon",  "splash",
-                                      "spouts",    "steps",            "still_pool", "wave_pool"};
+static const char *const shipped[] = {"dam_break", "double_dam_break", "glass",    "pontoon", "splash", "spouts",
+                                      "steps",     "still_pool",       "wave_pool"};
 
 static bool same_fields(const SceneObject *object, const char *a, const char *b);
 
@@ -112,25 +112,26 @@ static void test_shipped_scenes_round_trip(void **state) {
 
 static void test_odd_values_round_trip(void **state) {
   (void)state;
-  Scene scene =
-      load("{\"version\": 1, \"name\": \"\\u0001 \\\\ \\\" \\u20ac\",\n"
-           "\"simulation\": {\"particle_radius\": 0.0123456789, \"viscosity\": 1e-30, \"duration\": 0.1},\n"
-           "\"container\": {\"min\": [-1e-45, 1e-7, 0]},\n"
-           "\"obstacles\": [{\"type\": \"box\", \"size\": [1e-3, 3.3333333, 1], \"position\": [-0.0, 0, 0]},\n"
-           " {\"type\": \"capsule\", \"radius\": 0.1, \"height\": 0.2, \"position\": [0, 0, 0], \"name\": \"3\",\n"
-           "  \"motion\": \"scripted\", \"keys\": [{\"time\": 0.1, \"position\": [0,0,0]}]},\n"
-           " {\"type\": \"stairs\", \"size\": [1,1,1], \"steps\": 3, \"position\": [0,0,0], \"motion\": \"draggable\"}],\n"
-           "\"fluid\": [{\"type\": \"emitter\", \"diameter\": 0.3, \"position\": [1,1,0], \"direction\": [1,2,3],\n"
-           "  \"stop\": 0.7, \"obstacle\": \"3\", \"name\": \"\\u20ac\"},\n"
-           " {\"type\": \"emitter\", \"shape\": \"rectangle\", \"size\": [0.1, 0.3], \"position\": [1,1,0], \"direction\": [0,1,0],\n"
-           "  \"obstacle\": 1}, {\"type\": \"drop\", \"centre\": [1, 1, 0.1], \"radius\": 0.1}],\n"
-           "\"sinks\": [{\"min\": [0,0,0], \"max\": [0.1, 0.2, 0.3]}],\n"
-           "\"events\": [{\"type\": \"push\", \"time\": 0.3333333333333333, \"origin\": [0,0,0],\n"
-           "  \"direction\": [1, 2, 3], \"acceleration\": [0,0,1]},\n"
-           " {\"type\": \"drag\", \"obstacle\": 2, \"position\": [0,0.1,1]},\n"
-           " {\"type\": \"emitter\", \"emitter\": \"\\u20ac\", \"on\": false},\n"
-           " {\"type\": \"camera\", \"eye\": [0,0,1], \"target\": [0,0,0]},\n"
-           " {\"type\": \"tilt\", \"gravity\": [0.1, 0.2, 0.3]}]}");
+  Scene scene = load(
+      "{\"version\": 1, \"name\": \"\\u0001 \\\\ \\\" \\u20ac\",\n"
+      "\"simulation\": {\"particle_radius\": 0.0123456789, \"viscosity\": 1e-30, \"duration\": 0.1},\n"
+      "\"container\": {\"min\": [-1e-45, 1e-7, 0]},\n"
+      "\"obstacles\": [{\"type\": \"box\", \"size\": [1e-3, 3.3333333, 1], \"position\": [-0.0, 0, 0]},\n"
+      " {\"type\": \"capsule\", \"radius\": 0.1, \"height\": 0.2, \"position\": [0, 0, 0], \"name\": \"3\",\n"
+      "  \"motion\": \"scripted\", \"keys\": [{\"time\": 0.1, \"position\": [0,0,0]}]},\n"
+      " {\"type\": \"stairs\", \"size\": [1,1,1], \"steps\": 3, \"position\": [0,0,0], \"motion\": \"draggable\"}],\n"
+      "\"fluid\": [{\"type\": \"emitter\", \"diameter\": 0.3, \"position\": [1,1,0], \"direction\": [1,2,3],\n"
+      "  \"stop\": 0.7, \"obstacle\": \"3\", \"name\": \"\\u20ac\"},\n"
+      " {\"type\": \"emitter\", \"shape\": \"rectangle\", \"size\": [0.1, 0.3], \"position\": [1,1,0], \"direction\": "
+      "[0,1,0],\n"
+      "  \"obstacle\": 1}, {\"type\": \"drop\", \"centre\": [1, 1, 0.1], \"radius\": 0.1}],\n"
+      "\"sinks\": [{\"min\": [0,0,0], \"max\": [0.1, 0.2, 0.3]}],\n"
+      "\"events\": [{\"type\": \"push\", \"time\": 0.3333333333333333, \"origin\": [0,0,0],\n"
+      "  \"direction\": [1, 2, 3], \"acceleration\": [0,0,1]},\n"
+      " {\"type\": \"drag\", \"obstacle\": 2, \"position\": [0,0.1,1]},\n"
+      " {\"type\": \"emitter\", \"emitter\": \"\\u20ac\", \"on\": false},\n"
+      " {\"type\": \"camera\", \"eye\": [0,0,1], \"target\": [0,0,0]},\n"
+      " {\"type\": \"tilt\", \"gravity\": [0.1, 0.2, 0.3]}]}");
   check_round_trip(&scene);
   scene_free(&scene);
   // The comparison can fail.

@@ -95,7 +95,8 @@ static void a_left_drag_on_a_draggable_body_moves_it(void **state) {
     float x;
     int mods;
     WindowDrag drag;
-  } rows[] = {{10, 0, WINDOW_DRAG_ORBIT}, {400, GLFW_MOD_CONTROL, WINDOW_DRAG_WATER}, {400, GLFW_MOD_SHIFT, WINDOW_DRAG_PAN}};
+  } rows[] = {
+      {10, 0, WINDOW_DRAG_ORBIT}, {400, GLFW_MOD_CONTROL, WINDOW_DRAG_WATER}, {400, GLFW_MOD_SHIFT, WINDOW_DRAG_PAN}};
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
     WindowInput input = fresh();
     input.bodies = (GrabBodies){1, &body, &def};
