@@ -60,7 +60,7 @@
     "Gravity at the start.") \
   F(S, NUMBER,    time_step,       "s",        "[0, 0.1]",         "0", \
     "Longest substep; 0: adaptive, from cfl.") \
-  F(S, NUMBER,    cfl,             "spacings", "[0.05, 2]",        "0.4", \
+  F(S, NUMBER,    cfl,             "spacings", "[0.05, 2]",        "0.8", \
     "Adaptive step: how far the fastest particle may move in one substep.") \
   F(S, INTEGER,   iterations,      "",         "[1, 100]",         "4", \
     "Density iterations a substep.") \
@@ -74,7 +74,7 @@
     "Vorticity confinement: keeps eddies alive.") \
   F(S, NUMBER,    relaxation,      "",         "[0.001, 10]",      "0.1", \
     "Softness of the density constraint (PBF); larger is softer and steadier.") \
-  F(S, NUMBER,    tensile,         "",         "[0, 0.1]",         "0.003", \
+  F(S, NUMBER,    tensile,         "",         "[0, 0.1]",         "0", \
     "Artificial pressure against clumping at the surface (PBF).") \
   F(S, INTEGER,   max_particles,   "",         "[0, 16777216]",    "0", \
     "Emitters and pouring stop there; 0: as many as there can be, 16777216.") \
