@@ -112,12 +112,11 @@ static bool open_bench(Bench *bench, const Options *options, AppError *error) {
   bench->frame_seconds = 1 / options->fps;
   bench->frames = options->last_frame >= 0 ? options->last_frame - options->first_frame + 1 : DEFAULT_FRAMES;
 
-  SimError sim_error;
-  SimWorldDef def = scene_world_def(&bench->scene);
-  if (options->threads > 0) def.threads = options->threads;
-  bench->world = sim_world_create(&def, &sim_error);
+  bench->world = scene_world_create(&bench->scene, options->threads, error);
+  if (!bench->world) return false;
+  SimCounts counts = sim_world_counts(bench->world);
+  if (!options->quiet) scene_tell_left_out(&bench->scene, &counts);
   bench->buffer = sim_frame_buffer_create();
-  if (!bench->world) return app_fail(error, APP_BAD_INPUT, "%s", sim_error.message);
   if (!bench->buffer) return app_fail(error, APP_FAILED, "out of memory");
 
   // The simulator can be timed where there is no OpenGL; say so rather than fail.

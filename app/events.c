@@ -63,6 +63,43 @@ void events_gravity(const Scene *scene, double time, float gravity[3]) {
   if (last) blend(from, last->tilt.gravity, progress(last, time), gravity);
 }
 
+/// Spherical interpolation, the short way (Shoemake, Animating rotation with quaternion curves, 1985).
+static void blend_turns(const float from[4], const float to[4], double weight, float out[4]) {
+  double dot = 0, blended[4], length = 0;
+  for (int k = 0; k < 4; k++) dot += (double)from[k] * to[k];
+  double sign = dot < 0 ? -1 : 1, angle = acos(fmin(sign * dot, 1)), sine = sin(angle);
+  // Nearly the same turn: on so short an arc the chord does.
+  double a = sine > 1e-4 ? sin((1 - weight) * angle) / sine : 1 - weight;
+  double b = sine > 1e-4 ? sin(weight * angle) / sine : weight;
+  for (int k = 0; k < 4; k++) {
+    blended[k] = a * from[k] + sign * b * to[k];
+    length += blended[k] * blended[k];
+  }
+  for (int k = 0; k < 4; k++) out[k] = (float)(blended[k] / sqrt(length));
+}
+
+static void blend_drags(const SceneEvent *event, double time, float position[3], float rotation[4]) {
+  blend(position, event->drag.position, progress(event, time), position);
+  if (isnan(event->drag.rotation[0])) return;
+  float to[4];
+  scene_quaternion(event->drag.rotation, to);
+  blend_turns(rotation, to, progress(event, time), rotation);
+}
+
+void events_drag(const Scene *scene, int32_t obstacle, double time, float position[3], float rotation[4]) {
+  const SimObstacle *body = &scene->defs.obstacles[obstacle].body;
+  memcpy(position, body->position, sizeof body->position);
+  memcpy(rotation, body->rotation, sizeof body->rotation);
+  const SceneEvent *last = NULL;
+  for (int i = 0; i < scene->events_count && scene->events[i].time <= time; i++) {
+    const SceneEvent *event = &scene->events[i];
+    if (event->type != EVENT_DRAG || event->drag.obstacle.index != obstacle) continue;
+    if (last) blend_drags(last, event->time, position, rotation);
+    last = event;
+  }
+  if (last) blend_drags(last, time, position, rotation);
+}
+
 static void blend_views(const Scene *scene, const RenderView *from, const SceneEvent *event, double time,
                         RenderView *out) {
   double weight = smoothstep(progress(event, time));
@@ -116,6 +153,24 @@ static bool pour_world(const SceneEvent *event, int index, Interval interval, Si
   return app_fail(error, APP_FAILED, "events[%d]: %s", index, reason.message);
 }
 
+static bool drag_world(const Scene *scene, int index, double end, Interval interval, SimWorld *world, AppError *error) {
+  const SceneEvent *event = &scene->events[index];
+  if (!(covered(event, interval) > 0)) return true;
+  float position[3], rotation[4];
+  events_drag(scene, event->drag.obstacle.index, end, position, rotation);
+  if (sim_world_drag(world, event->drag.obstacle.index, position, rotation)) return true;
+  return app_fail(error, APP_FAILED, "events[%d]: the drag was refused: not a draggable obstacle, or not finite",
+                  index);
+}
+
+static bool switch_world(const Scene *scene, int index, Interval interval, SimWorld *world, AppError *error) {
+  const SceneEvent *event = &scene->events[index];
+  if (!(nanoseconds(event->time) >= interval.begin)) return true;
+  int32_t emitter = scene_emitter_index(scene, event->emitter.emitter.index);
+  if (sim_world_set_emitter(world, emitter, event->emitter.on)) return true;
+  return app_fail(error, APP_FAILED, "events[%d]: there is no such emitter", index);
+}
+
 static bool move_world(const Scene *scene, double time, double step, SimWorld *world, AppError *error) {
   Interval interval = interval_of(time, step);
   bool tilted = false;
@@ -123,6 +178,8 @@ static bool move_world(const Scene *scene, double time, double step, SimWorld *w
     const SceneEvent *event = &scene->events[i];
     if (event->type == EVENT_PUSH && !push_world(event, i, interval, world, error)) return false;
     if (event->type == EVENT_POUR && !pour_world(event, i, interval, world, error)) return false;
+    if (event->type == EVENT_DRAG && !drag_world(scene, i, time + step, interval, world, error)) return false;
+    if (event->type == EVENT_EMITTER && !switch_world(scene, i, interval, world, error)) return false;
     if (event->type == EVENT_TILT) tilted = true;
   }
   if (!tilted) return true;

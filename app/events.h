@@ -1,4 +1,5 @@
-// The timeline of a scene: pushes, pours, tilts, changes of style and moves of the eye, as if by a hand.
+// The timeline of a scene: pushes, pours, tilts, drags, emitters turned on and off, changes of style and moves of the
+// eye, as if by a hand.
 //
 // Nothing here remembers anything: what happens in a stretch of time depends on the scene and on that stretch alone, so
 // frames A:B of a film equal the same frames of the whole. Frame n shows the moment n·step. The loop of every command:
@@ -23,6 +24,8 @@
 /// World: a push acts for as long as it lasts, its acceleration scaled by the part of the step that it covers; a push
 /// that lasts 0 s acts for the whole step in which it falls. A pour fills its box once in every step that it
 /// covers, so one that lasts 0 s once. From the first tilt on, gravity is that of the middle of the step (its mean).
+/// A drag that the step covers wants its obstacle where events_drag says at the step's end; an emitter is turned in the
+/// step in which its event begins.
 /// Settings: the style of the last style event that began before time + step. View: where the eye is at `time`. Both
 /// are left alone before the first such event.
 ///
@@ -35,5 +38,9 @@ bool events_apply(const Scene *scene, double time, double step, SimWorld *world,
 
 /// Gravity at a moment, m/s²: the scene's, then linear to that of each tilt over its duration.
 void events_gravity(const Scene *scene, double time, float gravity[3]);
+
+/// Where the drags want a draggable obstacle at a moment: at first where the scene puts it, then evenly to the place of
+/// each drag over its duration, the short way around.
+void events_drag(const Scene *scene, int32_t obstacle, double time, float position[3], float rotation[4]);
 
 #endif

@@ -28,7 +28,7 @@
 
 /// What is not a key press: X(name, what it does).
 #define WINDOW_GESTURES(X) \
-  X("Left drag",    "look around") \
+  X("Left drag",    "look around; on a draggable body: move it") \
   X("Middle drag",  "move the view, also with Shift + left") \
   X("Wheel",        "nearer, further") \
   X("Right drag",   "push the water, also with Ctrl + left") \

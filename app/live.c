@@ -43,6 +43,7 @@ static bool advance(Live *live) {
   if (!events_apply(live->scene, (double)live->index * step, step, live->world, NULL, NULL, &live->error)) return false;
   // The hand comes after the timeline: where both want more pushes than act at once, the timeline has its way.
   for (int i = 0; i < live->input.push_count; i++) sim_world_push(live->world, &live->input.pushes[i]);
+  if (live->input.drag) sim_world_drag(live->world, live->input.body, live->input.position, NULL);
   if (live->input.set_gravity) sim_world_set_gravity(live->world, live->input.gravity);
   SimError reason;
   if (!sim_world_advance(live->world, step, &reason)) return app_fail(&live->error, APP_FAILED, "%s", reason.message);
@@ -78,11 +79,8 @@ static void work(void *user, int slot) {
 // ---- On the caller's thread -------------------------------------------------------------------------------------------
 
 static bool start(Live *live, int threads, unsigned needs, AppError *error) {
-  SimWorldDef def = scene_world_def(live->scene);
-  if (threads > 0) def.threads = threads;
-  SimError reason;
-  live->world = sim_world_create(&def, &reason);
-  if (!live->world) return app_fail(error, APP_BAD_INPUT, "%s", reason.message);
+  live->world = scene_world_create(live->scene, threads, error);
+  if (!live->world) return false;
   for (int slot = 0; slot < 2; slot++)
     if (!(live->buffers[slot] = sim_frame_buffer_create())) return app_fail(error, APP_FAILED, "out of memory");
   live->pipeline = pipeline_create(work, live);

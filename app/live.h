@@ -20,6 +20,9 @@ typedef struct LiveInput {
   SimPush pushes[INTERACT_MAX_PUSHES]; ///< (push_count)
   bool set_gravity;                    ///< gravity is `gravity` from now on, instead of the scene's or the last one
   float gravity[3];                    ///< m/s²
+  bool drag;                           ///< the draggable obstacle `body` is wanted at `position` from now on
+  int32_t body;                        ///< its place among the scene's obstacles
+  float position[3];                   ///< m
 } LiveInput;
 
 /// A frame that can be shown, and how it came about.

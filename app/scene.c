@@ -65,7 +65,8 @@ static char *read_file(const char *path, size_t *size, AppError *error) {
 static bool load_tree(const SceneSource *source, cJSON *root, Scene *scene) {
   for (int i = 0; cJSON_IsObject(root) && i < source->set_count; i++)
     if (!scene_apply_set(source, root, source->sets[i])) return false;
-  return scene_parse(source, root, scene) && scene_complete(source, root, scene);
+  return scene_parse(source, root, scene) && scene_complete(source, root, scene) &&
+         scene_defs_make(source, root, scene);
 }
 
 bool scene_load_text(Scene *scene, const char *name, const char *text, size_t size, const char *const *sets,
@@ -100,42 +101,29 @@ bool scene_load(Scene *scene, const char *path, const char *const *sets, int set
   return good;
 }
 
+/// The lists in an object, and in their items.
+static void free_lists(const SceneObject *object, char *members) {
+  for (int i = 0; i < object->field_count; i++) {
+    const SceneField *field = &object->fields[i];
+    if (field->type == SCENE_OBJECT || field->type == SCENE_VARIANT) free_lists(field->object, members + field->offset);
+    if (field->type != SCENE_LIST) continue;
+    char *items;
+    int32_t count;
+    memcpy(&items, members + field->offset, sizeof items);
+    memcpy(&count, members + field->count_offset, sizeof count);
+    for (int32_t k = 0; k < count; k++) free_lists(field->object, items + (size_t)k * field->object->size);
+    free(items);
+  }
+}
+
 void scene_free(Scene *scene) {
+  scene_defs_free(scene);
+  free_lists(&scene_top, (char *)scene);
   free(scene->path);
-  free(scene->fluid);
-  free(scene->obstacles);
-  free(scene->events);
-  free(scene->blocks);
-  free(scene->solids);
   *scene = (Scene){0};
 }
 
 // ---- Use ------------------------------------------------------------------------------------------------------------
-
-SimWorldDef scene_world_def(const Scene *scene) {
-  const SceneSimulation *simulation = &scene->simulation;
-  SimWorldDef def = sim_default_world_def();
-  def.solver = (SimSolver)simulation->solver;
-  def.particle_radius = simulation->particle_radius;
-  def.rest_density = simulation->rest_density;
-  def.support = simulation->support;
-  memcpy(def.gravity, simulation->gravity, sizeof def.gravity);
-  def.time_step = simulation->time_step;
-  def.cfl = simulation->cfl;
-  def.iterations = simulation->iterations;
-  def.viscosity = simulation->viscosity;
-  def.relaxation = simulation->relaxation;
-  def.tensile = simulation->tensile;
-  memcpy(def.container.min, scene->container.min, sizeof def.container.min);
-  memcpy(def.container.max, scene->container.max, sizeof def.container.max);
-  def.block_count = scene->fluid_count;
-  def.blocks = scene->blocks;
-  def.obstacle_count = scene->obstacles_count;
-  def.obstacles = scene->solids;
-  def.seed = simulation->seed;
-  def.jitter = simulation->jitter;
-  return def;
-}
 
 RenderSettings scene_render_settings(const Scene *scene) {
   const SceneEnvironment *environment = &scene->environment;

@@ -6,7 +6,7 @@
 //
 //   Scene scene;
 //   if (!scene_load(&scene, "dam_break", NULL, 0, &error)) return false;
-//   SimWorldDef def = scene_world_def(&scene);
+//   SimWorld *world = scene_world_create(&scene, 0, &error);
 //   …
 //   scene_free(&scene);
 #ifndef LIDO_APP_SCENE_H
@@ -22,6 +22,12 @@
 #include "sim/sim.h"
 
 #define SCENE_TEXT_SIZE 128
+
+/// An item of a list, by its name or by its place.
+typedef struct SceneReference {
+  int32_t index;              ///< its place, found by the name where there is one; −1: none
+  char name[SCENE_TEXT_SIZE]; ///< empty: by its place
+} SceneReference;
 
 /// The scene that opens when none is named.
 #define SCENE_DEFAULT "dam_break"
@@ -39,7 +45,10 @@
 #define SCENE_MEMBER_VECTOR(key) float key[3];
 #define SCENE_MEMBER_DIRECTION(key) float key[3];
 #define SCENE_MEMBER_OPTIONAL(key) float key;
+#define SCENE_MEMBER_OPTIONAL_REAL(key) double key;
+#define SCENE_MEMBER_OPTIONAL_PAIR(key) float key[2];
 #define SCENE_MEMBER_OPTIONAL_VECTOR(key) float key[3];
+#define SCENE_MEMBER_REFERENCE(key) SceneReference key;
 
 #define SCENE_MEMBER(S, type, key, unit, range, fallback, doc) SCENE_MEMBER_##type(key)
 #define SCENE_MEMBER_OBJECT(S, Struct, key, doc) Struct key;
@@ -54,28 +63,59 @@
   } S;
 SCENE_STRUCTS(SCENE_STRUCT)
 
-/// scene.events[i].type
-typedef enum SceneEventType { EVENT_PUSH, EVENT_POUR, EVENT_TILT, EVENT_STYLE, EVENT_CAMERA } SceneEventType;
+// What the numbers of choices mean: places in the range of the table.
+typedef enum SceneSolver { SOLVER_PBF, SOLVER_SPH } SceneSolver;
+typedef enum SceneContainerShape { CONTAINER_BOX, CONTAINER_GLASS } SceneContainerShape;
+typedef enum SceneFluidType { FLUID_BLOCK, FLUID_DROP, FLUID_EMITTER } SceneFluidType;
+typedef enum SceneEmitterShape { EMITTER_DISC, EMITTER_RECTANGLE } SceneEmitterShape;
+typedef enum SceneObstacleType {
+  OBSTACLE_BOX,
+  OBSTACLE_SPHERE,
+  OBSTACLE_CYLINDER,
+  OBSTACLE_CAPSULE,
+  OBSTACLE_STAIRS,
+  OBSTACLE_MESH
+} SceneObstacleType;
+typedef enum SceneMotion { MOTION_STATIC, MOTION_SCRIPTED, MOTION_DRAGGABLE, MOTION_FLOATING } SceneMotion;
+typedef enum SceneEventType {
+  EVENT_PUSH,
+  EVENT_POUR,
+  EVENT_TILT,
+  EVENT_STYLE,
+  EVENT_CAMERA,
+  EVENT_DRAG,
+  EVENT_EMITTER
+} SceneEventType;
+
+/// What scene_world_def points to: made when the scene is loaded, valid until scene_free.
+typedef struct SceneDefs {
+  int32_t block_count, drop_count, emitter_count;
+  SimBlockDef *blocks;       ///< (block_count)
+  SimDropDef *drops;         ///< (drop_count)
+  SimEmitterDef *emitters;   ///< (emitter_count)
+  SimSinkDef *sinks;         ///< (sinks_count)
+  SimObstacleDef *obstacles; ///< (obstacles_count)
+  SimPoseKey **keys;         ///< (obstacles_count), each (keys_count) of its obstacle
+  SimMesh *meshes;           ///< (obstacles_count), empty where the obstacle is none
+} SceneDefs;
 
 typedef struct Scene {
   SCENE_TOP(SCENE_MEMBER, SCENE_MEMBER_OBJECT, SCENE_MEMBER_LIST, SCENE_MEMBER_VARIANT, Scene)
 
   char *path; // of the file, as it was found, for messages
-
-  // Made from the above when the scene is loaded, for scene_world_def.
-  SimBlockDef *blocks;  // (fluid_count)
-  SimObstacleDef *solids; // (obstacles_count)
+  SceneDefs defs;
 } Scene;
 
 // ---- Loading --------------------------------------------------------------------------------------------------------
 
-/// Read the scene file `path` (found as by scene_find), change it by the "key.path=value" strings `sets`, check it and
-/// fill in defaults. Events come out sorted by time, the directions of pushes as unit vectors, the camera with numbers.
+/// Read the scene file `path` (found as by scene_find) and the meshes that it names, change it by the "key.path=value"
+/// strings `sets`, check it and fill in defaults. Events come out sorted by time, the directions of pushes as unit
+/// vectors, the camera with numbers, names with the places that they stand for.
 /// false and *error (APP_BAD_INPUT; APP_FAILED when memory runs out): the message names file, line, key path and cause.
 /// The scene is then empty; scene_free is allowed, not needed.
 bool scene_load(Scene *scene, const char *path, const char *const *sets, int set_count, AppError *error);
 
-/// The same from `size` bytes of text; `name` stands for the file in messages.
+/// The same from `size` bytes of text; `name` stands for the file in messages, and meshes are looked for beside it.
 bool scene_load_text(Scene *scene, const char *name, const char *text, size_t size, const char *const *sets,
                      int set_count, AppError *error);
 void scene_free(Scene *scene);
@@ -91,11 +131,23 @@ bool scene_folder(char *path, size_t size);
 
 /// Pointers in it point into the scene.
 SimWorldDef scene_world_def(const Scene *scene);
+/// A world of the scene. threads 0: as many as there are cores. NULL and *error (APP_BAD_INPUT): it cannot be made.
+SimWorld *scene_world_create(const Scene *scene, int threads, AppError *error);
+/// Tell on stderr, in one line, how many particles a new world has left out, if any.
+void scene_tell_left_out(const Scene *scene, const SimCounts *counts);
+
 RenderSettings scene_render_settings(const Scene *scene);
 RenderView scene_view(const Scene *scene);
 
-/// Number of particles that the fluid blocks hold before those in obstacles or outside the container are left out.
+/// Number of particles that the fluid holds at the start, before those in obstacles or outside the container are left
+/// out: exact for blocks, by the volume for drops.
 int64_t scene_particle_count(const Scene *scene);
+
+/// Which of the world's emitters the fluid item `fluid` is; −1: it is none.
+int32_t scene_emitter_index(const Scene *scene, int32_t fluid);
+
+/// Unit quaternion (x, y, z, w) of a turn about x, then y, then z, in degrees.
+void scene_quaternion(const float degrees[3], float quaternion[4]);
 
 // ---- Text made from the table: each is to be freed, NULL when memory runs out ---------------------------------------
 

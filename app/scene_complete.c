@@ -1,5 +1,6 @@
 // What no field can tell alone: boxes the right way round, water inside the container and not twice in one place, no
-// more particles than fit. Then what the rest of the program wants ready: sorted events, unit directions, a camera.
+// more particles than fit, names that stand for something. Then what the rest of the program wants ready: sorted events,
+// unit directions, a camera.
 #include <cjson/cJSON.h>
 
 #include <inttypes.h>
@@ -20,8 +21,7 @@ typedef struct Check {
   Scene *scene;
 } Check;
 
-/// Fail at a key path given as text: its place in the file is looked up in the tree.
-static bool fail_at(const Check *check, const char *keys, const char *format, ...) {
+bool scene_fail_at(const SceneSource *source, const cJSON *root, const char *keys, const char *format, ...) {
   enum { LEVELS = 8 };
   ScenePath chain[LEVELS] = {{0}};
   char parts[SCENE_PATH_SIZE], message[400];
@@ -30,7 +30,7 @@ static bool fail_at(const Check *check, const char *keys, const char *format, ..
   vsnprintf(message, sizeof message, format, arguments);
   va_end(arguments);
   snprintf(parts, sizeof parts, "%s", keys);
-  const cJSON *here = check->root;
+  const cJSON *here = root;
   int level = 0;
   for (char *rest = parts, *key; level + 1 < LEVELS && (key = strtok_r(rest, ".", &rest));) {
     bool item = *key >= '0' && *key <= '9';
@@ -44,7 +44,13 @@ static bool fail_at(const Check *check, const char *keys, const char *format, ..
     chain[level] = (ScenePath){&chain[level - 1], item ? NULL : key, item || child ? ordinal : -1};
     here = child;
   }
-  return scene_fail(check->source, &chain[level], "%s", message);
+  return scene_fail(source, &chain[level], "%s", message);
+}
+
+#define fail_at(check, ...) scene_fail_at((check)->source, (check)->root, __VA_ARGS__)
+
+static float distance(const float a[3], const float b[3]) {
+  return sqrtf((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2]));
 }
 
 // ---- Boxes and particles --------------------------------------------------------------------------------------------
@@ -73,46 +79,128 @@ static double lattice_count(const float min[3], const float max[3], float radius
   return count;
 }
 
-static bool check_block(const Check *check, const char *keys, const float min[3], const float max[3]) {
+static bool too_many(const Check *check, const char *keys, double count) {
+  return fail_at(check, keys, "would hold %.0f particles of radius %g m, more than the limit of %d", count,
+                 (double)check->scene->simulation.particle_radius, SIM_MAX_PARTICLES);
+}
+
+/// A box with room for water, at least a part of it in the container.
+static bool check_place(const Check *check, const char *keys, const float min[3], const float max[3]) {
   const SceneContainer *container = &check->scene->container;
-  float radius = check->scene->simulation.particle_radius;
   if (!check_box(check, keys, min, max)) return false;
-  if (!overlap(min, max, container->min, container->max, 0)) return fail_at(check, keys, "lies outside the container");
-  double count = lattice_count(min, max, radius);
-  if (count > SIM_MAX_PARTICLES)
-    return fail_at(check, keys, "would hold %.0f particles of radius %g m, more than the limit of %d", count,
-                   (double)radius, SIM_MAX_PARTICLES);
+  return overlap(min, max, container->min, container->max, 0) || fail_at(check, keys, "lies outside the container");
+}
+
+static bool check_block(const Check *check, const char *keys, const float min[3], const float max[3]) {
+  if (!check_place(check, keys, min, max)) return false;
+  double count = lattice_count(min, max, check->scene->simulation.particle_radius);
+  return count <= SIM_MAX_PARTICLES || too_many(check, keys, count);
+}
+
+static void drop_box(const SceneDrop *drop, float min[3], float max[3]) {
+  for (int i = 0; i < 3; i++) {
+    min[i] = drop->centre[i] - drop->radius;
+    max[i] = drop->centre[i] + drop->radius;
+  }
+}
+
+/// By its volume.
+static double drop_count(const SceneDrop *drop, float radius) {
+  return fmax(1, rint(4.0 / 3 * 3.14159265358979323846 * pow(drop->radius / (2.0 * (double)radius), 3)));
+}
+
+static bool check_drop(const Check *check, const char *keys, const SceneDrop *drop) {
+  float min[3], max[3];
+  drop_box(drop, min, max);
+  if (!check_place(check, keys, min, max)) return false;
+  double count = drop_count(drop, check->scene->simulation.particle_radius);
+  return count <= SIM_MAX_PARTICLES || too_many(check, keys, count);
+}
+
+static bool check_emitter(const Check *check, const char *keys, const SceneEmitter *emitter) {
+  const SceneContainer *container = &check->scene->container;
+  bool disc = emitter->shape == EMITTER_DISC;
+  if (disc && isnan(emitter->diameter)) return fail_at(check, keys, "a disc needs a diameter");
+  if (!disc && isnan(emitter->size[0])) return fail_at(check, keys, "a rectangle needs a size");
+  if (emitter->stop <= emitter->start) return fail_at(check, keys, "stop must be later than start");
+  // One that is carried may come in from outside.
+  bool carried = emitter->obstacle.index >= 0 || *emitter->obstacle.name;
+  for (int i = 0; i < 3 && !carried; i++)
+    if (emitter->position[i] < container->min[i] || emitter->position[i] > container->max[i])
+      return fail_at(check, keys, "lies outside the container");
   return true;
+}
+
+static bool check_item(const Check *check, const char *keys, const SceneFluid *fluid) {
+  switch ((SceneFluidType)fluid->type) {
+  case FLUID_BLOCK:
+    return check_block(check, keys, fluid->block.min, fluid->block.max);
+  case FLUID_DROP:
+    return check_drop(check, keys, &fluid->drop);
+  case FLUID_EMITTER:
+    return check_emitter(check, keys, &fluid->emitter);
+  }
+  return false;
+}
+
+/// Whether a ball reaches more than `tolerance` into a box.
+static bool ball_overlaps_box(const SceneDrop *drop, const SceneBlock *block, float tolerance) {
+  double square = 0;
+  for (int i = 0; i < 3; i++) {
+    double nearest = fmin(fmax(drop->centre[i], block->min[i]), block->max[i]);
+    square += (nearest - drop->centre[i]) * (nearest - drop->centre[i]);
+  }
+  return sqrt(square) < drop->radius - tolerance;
+}
+
+static bool items_overlap(const SceneFluid *a, const SceneFluid *b, float tolerance) {
+  if (a->type == FLUID_EMITTER || b->type == FLUID_EMITTER) return false;
+  if (a->type == FLUID_BLOCK && b->type == FLUID_BLOCK)
+    return overlap(a->block.min, a->block.max, b->block.min, b->block.max, tolerance);
+  if (a->type == FLUID_DROP && b->type == FLUID_DROP)
+    return distance(a->drop.centre, b->drop.centre) < a->drop.radius + b->drop.radius - tolerance;
+  bool drop_first = a->type == FLUID_DROP;
+  return ball_overlaps_box(drop_first ? &a->drop : &b->drop, drop_first ? &b->block : &a->block, tolerance);
 }
 
 static bool check_fluid(const Check *check) {
   const Scene *scene = check->scene;
   char keys[40];
   for (int i = 0; i < scene->fluid_count; i++) {
-    const SceneBlock *block = &scene->fluid[i].block;
     snprintf(keys, sizeof keys, "fluid.%d", i);
-    if (!check_block(check, keys, block->min, block->max)) return false;
+    if (!check_item(check, keys, &scene->fluid[i])) return false;
   }
   int64_t count = scene_particle_count(scene);
-  if (count > SIM_MAX_PARTICLES)
-    return fail_at(check, "fluid", "would hold %" PRId64 " particles of radius %g m, more than the limit of %d", count,
-                   (double)scene->simulation.particle_radius, SIM_MAX_PARTICLES);
-  // Blocks may touch. A tenth of a spacing does no harm; more would burst apart in the first step.
+  if (count > SIM_MAX_PARTICLES) return too_many(check, "fluid", (double)count);
+  // Water may touch. A tenth of a spacing does no harm; more would burst apart in the first step.
   float tolerance = 0.2f * scene->simulation.particle_radius;
   for (int i = 0; i < scene->fluid_count; i++)
     for (int k = 0; k < i; k++) {
-      const SceneBlock *a = &scene->fluid[i].block, *b = &scene->fluid[k].block;
       snprintf(keys, sizeof keys, "fluid.%d", i);
-      if (overlap(a->min, a->max, b->min, b->max, tolerance)) return fail_at(check, keys, "overlaps fluid.%d", k);
+      if (items_overlap(&scene->fluid[i], &scene->fluid[k], tolerance))
+        return fail_at(check, keys, "overlaps fluid.%d", k);
     }
+  return true;
+}
+
+static bool check_sinks(const Check *check) {
+  char keys[40];
+  for (int i = 0; i < check->scene->sinks_count; i++) {
+    snprintf(keys, sizeof keys, "sinks.%d", i);
+    if (!check_place(check, keys, check->scene->sinks[i].min, check->scene->sinks[i].max)) return false;
+  }
   return true;
 }
 
 int64_t scene_particle_count(const Scene *scene) {
   double count = 0;
-  for (int i = 0; i < scene->fluid_count; i++)
-    count += lattice_count(scene->fluid[i].block.min, scene->fluid[i].block.max, scene->simulation.particle_radius);
-  return (int64_t)count;
+  float radius = scene->simulation.particle_radius;
+  for (int i = 0; i < scene->fluid_count; i++) {
+    const SceneFluid *fluid = &scene->fluid[i];
+    if (fluid->type == FLUID_BLOCK) count += lattice_count(fluid->block.min, fluid->block.max, radius);
+    if (fluid->type == FLUID_DROP) count += drop_count(&fluid->drop, radius);
+  }
+  return (int64_t)fmin(count, 1e18);
 }
 
 static bool check_container(const Check *check) {
@@ -132,11 +220,39 @@ static bool check_container(const Check *check) {
   return true;
 }
 
-// ---- Events ---------------------------------------------------------------------------------------------------------
+// ---- Obstacles ------------------------------------------------------------------------------------------------------
 
-static float distance(const float a[3], const float b[3]) {
-  return sqrtf((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2]));
+static bool check_keys(const Check *check, const char *keys, const SceneObstacle *obstacle) {
+  for (int i = 1; i < obstacle->keys_count; i++)
+    if (!(obstacle->keys[i].time > obstacle->keys[i - 1].time)) {
+      char place[64];
+      snprintf(place, sizeof place, "%s.keys.%d.time", keys, i);
+      return fail_at(check, place, "must be later than the key before it (%g s), got %g", obstacle->keys[i - 1].time,
+                     obstacle->keys[i].time);
+    }
+  return true;
 }
+
+static bool check_obstacles(const Check *check) {
+  for (int i = 0; i < check->scene->obstacles_count; i++) {
+    const SceneObstacle *obstacle = &check->scene->obstacles[i];
+    char keys[40];
+    snprintf(keys, sizeof keys, "obstacles.%d", i);
+    const float *stroke = obstacle->stroke;
+    bool moves = obstacle->keys_count > 0 || stroke[0] != 0 || stroke[1] != 0 || stroke[2] != 0;
+    bool scripted = obstacle->motion == MOTION_SCRIPTED;
+    if (scripted && !moves) return fail_at(check, keys, "a scripted obstacle needs keys or a stroke");
+    if (!scripted && moves) return fail_at(check, keys, "only a scripted obstacle has keys or a stroke");
+    if (!check_keys(check, keys, obstacle)) return false;
+    const SceneCapsule *capsule = &obstacle->capsule;
+    if (obstacle->type == OBSTACLE_CAPSULE && capsule->height < 2 * capsule->radius)
+      return fail_at(check, keys, "a capsule must be at least as high as two radii, got %g m and %g m",
+                     (double)capsule->height, (double)capsule->radius);
+  }
+  return true;
+}
+
+// ---- Events ---------------------------------------------------------------------------------------------------------
 
 /// Made a unit vector; one that is a unit vector but for rounding stays as it is, so that printing and loading ends.
 static void make_unit(float v[3]) {
@@ -160,6 +276,9 @@ static bool complete_event(const Check *check, int index) {
     if (isnan(event->camera.fov)) event->camera.fov = check->scene->camera.fov;
     return distance(event->camera.eye, event->camera.target) > 0 ||
            fail_at(check, keys, "eye and target must not be the same point");
+  case EVENT_DRAG:
+    return check->scene->obstacles[event->drag.obstacle.index].motion == MOTION_DRAGGABLE ||
+           fail_at(check, keys, "obstacles.%d is not draggable", (int)event->drag.obstacle.index);
   default:
     return true;
   }
@@ -217,72 +336,15 @@ static void place_camera(Scene *scene) {
   }
 }
 
-// ---- What the simulation reads --------------------------------------------------------------------------------------
-
-/// Unit quaternion (x, y, z, w) of a turn about x, then y, then z, in degrees.
-static void quaternion_from_degrees(const float degrees[3], float q[4]) {
-  double c[3], s[3];
-  for (int i = 0; i < 3; i++) {
-    double half = (double)degrees[i] * 3.14159265358979323846 / 360;
-    c[i] = cos(half);
-    s[i] = sin(half);
-  }
-  q[0] = (float)(s[0] * c[1] * c[2] - c[0] * s[1] * s[2]);
-  q[1] = (float)(c[0] * s[1] * c[2] + s[0] * c[1] * s[2]);
-  q[2] = (float)(c[0] * c[1] * s[2] - s[0] * s[1] * c[2]);
-  q[3] = (float)(c[0] * c[1] * c[2] + s[0] * s[1] * s[2]);
-}
-
-static SimBlockDef make_block(const SceneBlock *block) {
-  SimBlockDef def = {0};
-  memcpy(def.min, block->min, sizeof def.min);
-  memcpy(def.max, block->max, sizeof def.max);
-  memcpy(def.velocity, block->velocity, sizeof def.velocity);
-  memcpy(def.colour, block->colour, sizeof def.colour);
-  return def;
-}
-
-static SimObstacleDef make_solid(const SceneObstacle *obstacle) {
-  SimObstacleDef def = sim_default_obstacle_def();
-  SimObstacle solid = {.shape = (SimShape)obstacle->type};
-  switch (solid.shape) {
-  case SIM_BOX:
-    memcpy(solid.size, obstacle->box.size, sizeof solid.size);
-    break;
-  case SIM_SPHERE:
-    for (int i = 0; i < 3; i++) solid.size[i] = 2 * obstacle->sphere.radius;
-    break;
-  case SIM_CYLINDER:
-    solid.size[0] = solid.size[2] = 2 * obstacle->cylinder.radius;
-    solid.size[1] = obstacle->cylinder.height;
-    break;
-  default:
-    break;
-  }
-  memcpy(solid.position, obstacle->position, sizeof solid.position);
-  memcpy(solid.colour, obstacle->colour, sizeof solid.colour);
-  quaternion_from_degrees(obstacle->rotation, solid.rotation);
-  def.body = solid;
-  return def;
-}
-
-static bool make_defs(const Check *check) {
-  Scene *scene = check->scene;
-  scene->blocks = calloc((size_t)scene->fluid_count + 1, sizeof *scene->blocks);
-  scene->solids = calloc((size_t)scene->obstacles_count + 1, sizeof *scene->solids);
-  if (!scene->blocks || !scene->solids) return app_fail(check->source->error, APP_FAILED, "out of memory");
-  for (int i = 0; i < scene->fluid_count; i++) scene->blocks[i] = make_block(&scene->fluid[i].block);
-  for (int i = 0; i < scene->obstacles_count; i++) scene->solids[i] = make_solid(&scene->obstacles[i]);
-  return true;
-}
-
 bool scene_complete(const SceneSource *source, const cJSON *root, Scene *scene) {
   Check check = {source, root, scene};
-  if (!check_container(&check) || !check_fluid(&check)) return false;
+  if (!check_container(&check) || !check_fluid(&check) || !check_sinks(&check) || !check_obstacles(&check))
+    return false;
+  if (!scene_resolve_names(source, root, scene)) return false;
   place_camera(scene);
   if (distance(scene->camera.eye, scene->camera.target) <= 0)
     return fail_at(&check, "camera", "eye and target must not be the same point");
   for (int i = 0; i < scene->events_count; i++)
     if (!complete_event(&check, i)) return false;
-  return sort_events(&check) && make_defs(&check);
+  return sort_events(&check);
 }

@@ -14,21 +14,21 @@
 // SEED      uint64_t                      whole number                                     interval
 // SWITCH    bool                          true, false                                      –
 // TEXT      char[SCENE_TEXT_SIZE]         string                                           –
-// CHOICE    int32_t, place in the range   string                                           "a | b | (c)"; (c): later
+// CHOICE    int32_t, place in the range   string                                           "a | b | c"
 // STYLE     char[SCENE_TEXT_SIZE]         string, a style of the renderer                  –
 // VECTOR    float[3]                      three numbers                                    interval of each
 // DIRECTION float[3], kept as given       three numbers, not all zero                      interval of each
 // OPTIONAL  float, NAN for null           number or null                                   interval
+// OPTIONAL_REAL double, NAN for null      number or null                                   interval
+// OPTIONAL_PAIR float[2], NANs for null   two numbers or null                              interval of each
 // OPTIONAL_VECTOR float[3], NANs for null three numbers or null                            interval of each
+// REFERENCE SceneReference                name or place of an item; null where the default is null; the list
 #ifndef LIDO_APP_SCENE_FIELDS_H
 #define LIDO_APP_SCENE_FIELDS_H
 
 #include <stddef.h>
 
 #define SCENE_REQUIRED NULL
-
-/// Keys that belong to the format but come with a later version.
-#define SCENE_LATER_KEYS "simulation.surface_tension | simulation.vorticity"
 
 // clang-format off
 #define SCENE_TOP(F, O, L, V, S) \
@@ -38,7 +38,8 @@
     "What people call the scene.") \
   O(S, SceneSimulation,  simulation,        "How the water moves.") \
   O(S, SceneContainer,   container,         "What holds the water.") \
-  L(S, SceneFluid,       fluid,      4096,  "The water at the start; items must not overlap.") \
+  L(S, SceneFluid,       fluid,      4096,  "The water: at the start, where items must not overlap, and from spouts.") \
+  L(S, SceneSink,        sinks,      1024,  "Boxes that swallow the particles whose centres enter them.") \
   L(S, SceneObstacle,    obstacles,  1024,  "Solid bodies in the water.") \
   O(S, SceneCamera,      camera,            "Where the eye is.") \
   O(S, SceneLight,       light,             "The sun.") \
@@ -47,8 +48,8 @@
   L(S, SceneEvent,       events,     65536, "A timeline of what a hand would do; sorted by time when read.")
 
 #define SCENE_SIMULATION(F, O, L, V, S) \
-  F(S, CHOICE,    solver,          "",         "pbf | (sph)",      "\"pbf\"", \
-    "Method: pbf, position based fluids.") \
+  F(S, CHOICE,    solver,          "",         "pbf | sph",        "\"pbf\"", \
+    "Method: pbf, position based fluids; sph, smoothed particle hydrodynamics.") \
   F(S, NUMBER,    particle_radius, "m",        "[0.0001, 1]",      "0.0175", \
     "Half the spacing of the particles at rest.") \
   F(S, NUMBER,    rest_density,    "kg/m³",    "[1, 100000]",      "1000", \
@@ -59,16 +60,28 @@
     "Gravity at the start.") \
   F(S, NUMBER,    time_step,       "s",        "[0, 0.1]",         "0", \
     "Longest substep; 0: adaptive, from cfl.") \
-  F(S, NUMBER,    cfl,             "spacings", "[0.05, 2]",        "0.4", \
+  F(S, NUMBER,    cfl,             "spacings", "[0.05, 2]",        "0.8", \
     "Adaptive step: how far the fastest particle may move in one substep.") \
   F(S, INTEGER,   iterations,      "",         "[1, 100]",         "4", \
     "Density iterations a substep.") \
   F(S, NUMBER,    viscosity,       "",         "[0, 0.5]",         "0.01", \
     "XSPH factor: how much neighbours share their velocity.") \
+  F(S, NUMBER,    kinematic_viscosity, "m²/s", "[0, 10]",          "1e-6", \
+    "How thick the liquid is; the default is water's.") \
+  F(S, NUMBER,    surface_tension, "N/m",      "[0, 10]",          "0", \
+    "Pulls the surface together.") \
+  F(S, NUMBER,    vorticity,       "",         "[0, 1]",           "0", \
+    "Vorticity confinement: keeps eddies alive.") \
   F(S, NUMBER,    relaxation,      "",         "[0.001, 10]",      "0.1", \
     "Softness of the density constraint (PBF); larger is softer and steadier.") \
-  F(S, NUMBER,    tensile,         "",         "[0, 0.1]",         "0.003", \
+  F(S, NUMBER,    tensile,         "",         "[0, 0.1]",         "0", \
     "Artificial pressure against clumping at the surface (PBF).") \
+  F(S, INTEGER,   max_particles,   "",         "[0, 16777216]",    "0", \
+    "Emitters and pouring stop there; 0: as many as there can be, 16777216.") \
+  F(S, SWITCH,    reuse,           "",         "",                 "false", \
+    "At max_particles, emitters take away the particles that were emitted first.") \
+  F(S, NUMBER,    colour_diffusion, "m²/s",    "[0, 10]",          "0", \
+    "How fast the colours of neighbouring water mix.") \
   F(S, REAL,      duration,        "s",        "(0, 3600]",        "6", \
     "How long the scene lasts when it is recorded.") \
   F(S, SEED,      seed,            "",         "[0, 9007199254740991]", "1", \
@@ -77,19 +90,24 @@
     "Random displacement of the particles at the start.")
 
 #define SCENE_CONTAINER(F, O, L, V, S) \
-  F(S, CHOICE,    shape,           "",         "box | (glass)",    "\"box\"", \
-    "A box, open at the top for the eye but closed for particles.") \
+  F(S, CHOICE,    shape,           "",         "box | glass",      "\"box\"", \
+    "box, or glass: an upright cylinder around its middle, as wide as its shorter side; open at the top for the eye.") \
   F(S, VECTOR,    min,             "m",        "[-1000, 1000]",    "[0, 0, 0]", \
     "Lowest corner of the inner walls.") \
   F(S, VECTOR,    max,             "m",        "[-1000, 1000]",    "[3, 1.6, 1]", \
     "Highest corner of the inner walls.") \
+  F(S, NUMBER,    friction,        "",         "[0, 1]",           "0", \
+    "Share of the sliding speed that its walls take from the water beside them; 0 slips, 1 sticks.") \
   F(S, SWITCH,    visible,         "",         "",                 "true", \
     "Whether its edges are drawn.")
 
 #define SCENE_FLUID(F, O, L, V, S) \
-  F(S, CHOICE,    type,            "",         "block | (drop) | (emitter)", "\"block\"", \
+  F(S, CHOICE,    type,            "",         "block | drop | emitter", "\"block\"", \
     "What kind of water this is.") \
-  V(S, BLOCK,     block,           SceneBlock, "A box filled with particles.")
+  V(S, BLOCK,     block,           SceneBlock,   "A box filled with particles.") \
+  V(S, DROP,      drop,            SceneDrop,    "A ball filled with particles.") \
+  V(S, EMITTER,   emitter,         SceneEmitter, \
+    "A spout: layers of particles leave its opening, as many as its size and speed make; none where it is blocked.")
 
 #define SCENE_BLOCK(F, O, L, V, S) \
   F(S, VECTOR,    min,             "m",        "[-1000, 1000]",    SCENE_REQUIRED, \
@@ -101,20 +119,90 @@
   F(S, VECTOR,    colour,          "linear",   "[0, 1]",           "[0, 0, 0]", \
     "Colour of the water; all 0: the natural one.")
 
+#define SCENE_DROP(F, O, L, V, S) \
+  F(S, VECTOR,    centre,          "m",        "[-1000, 1000]",    SCENE_REQUIRED, \
+    "Its middle.") \
+  F(S, NUMBER,    radius,          "m",        "(0, 1000]",        SCENE_REQUIRED, \
+    "Its radius.") \
+  F(S, VECTOR,    velocity,        "m/s",      "[-1000, 1000]",    "[0, 0, 0]", \
+    "Velocity at the start.") \
+  F(S, VECTOR,    colour,          "linear",   "[0, 1]",           "[0, 0, 0]", \
+    "Colour of the water; all 0: the natural one.")
+
+#define SCENE_EMITTER(F, O, L, V, S) \
+  F(S, TEXT,      name,            "",         "",                 "\"\"", \
+    "What events call it.") \
+  F(S, CHOICE,    shape,           "",         "disc | rectangle", "\"disc\"", \
+    "Of the opening.") \
+  F(S, OPTIONAL,  diameter,        "m",        "(0, 1000]",        "null", \
+    "Of a disc, which needs it.") \
+  F(S, OPTIONAL_PAIR, size,        "m",        "(0, 1000]",        "null", \
+    "Of a rectangle, which needs it: full widths along up and across it.") \
+  F(S, VECTOR,    position,        "m",        "[-1000, 1000]",    SCENE_REQUIRED, \
+    "The middle of the opening; in the axes of the obstacle that carries it.") \
+  F(S, DIRECTION, direction,       "",         "[-1000, 1000]",    SCENE_REQUIRED, \
+    "Where the water leaves to; any length.") \
+  F(S, DIRECTION, up,              "",         "[-1000, 1000]",    "[0, 1, 0]", \
+    "Rolls a rectangle: its first side goes along up, as nearly as direction lets it; if they are parallel, along x.") \
+  F(S, NUMBER,    speed,           "m/s",      "[0.01, 100]",      "1", \
+    "Of the water that leaves, on top of the obstacle's.") \
+  F(S, REAL,      start,           "s",        "[0, 3600]",        "0", \
+    "When it begins to run.") \
+  F(S, OPTIONAL_REAL, stop,        "s",        "[0, 3600]",        "null", \
+    "When it ends; null: never.") \
+  F(S, VECTOR,    colour,          "linear",   "[0, 1]",           "[0, 0, 0]", \
+    "Colour of the water; all 0: the natural one.") \
+  F(S, REFERENCE, obstacle,        "",         "obstacles",        "null", \
+    "The obstacle that carries it; null: it stands still.")
+
+#define SCENE_SINK(F, O, L, V, S) \
+  F(S, VECTOR,    min,             "m",        "[-1000, 1000]",    SCENE_REQUIRED, \
+    "Lowest corner.") \
+  F(S, VECTOR,    max,             "m",        "[-1000, 1000]",    SCENE_REQUIRED, \
+    "Highest corner.")
+
+#define SCENE_KEY(F, O, L, V, S) \
+  F(S, REAL,      time,            "s",        "[0, 3600]",        SCENE_REQUIRED, \
+    "When it is there; later than the key before.") \
+  F(S, VECTOR,    position,        "m",        "[-1000, 1000]",    SCENE_REQUIRED, \
+    "Its centre then.") \
+  F(S, VECTOR,    rotation,        "degrees",  "[-360, 360]",      "[0, 0, 0]", \
+    "Turned about x, then y, then z; from key to key it turns the short way.")
+
 #define SCENE_OBSTACLE(F, O, L, V, S) \
-  F(S, CHOICE,    type,            "",         "box | sphere | cylinder | (stairs) | (mesh)", SCENE_REQUIRED, \
+  F(S, CHOICE,    type,            "",         "box | sphere | cylinder | capsule | stairs | mesh", SCENE_REQUIRED, \
     "Shape of the body.") \
-  F(S, CHOICE,    motion,          "",         "static | (scripted) | (draggable) | (floating)", "\"static\"", \
-    "How it moves: static, not at all.") \
+  F(S, TEXT,      name,            "",         "",                 "\"\"", \
+    "What emitters and events call it.") \
+  F(S, CHOICE,    motion,          "",         "static | scripted | draggable | floating", "\"static\"", \
+    "static: it stands; scripted: by keys and stroke; draggable: by mouse and drag events; floating: the water carries it.") \
   F(S, VECTOR,    position,        "m",        "[-1000, 1000]",    SCENE_REQUIRED, \
     "Its centre.") \
   F(S, VECTOR,    rotation,        "degrees",  "[-360, 360]",      "[0, 0, 0]", \
     "Turned about x, then y, then z.") \
   F(S, VECTOR,    colour,          "linear",   "[0, 1]",           "[0.75, 0.72, 0.68]", \
     "Its colour.") \
+  F(S, NUMBER,    friction,        "",         "[0, 1]",           "0", \
+    "Share of the sliding speed that it takes from the water beside it; 0 slips, 1 sticks.") \
+  L(S, SceneKey,  keys,       4096,  "Scripted: where it is and when; between keys it moves evenly.") \
+  F(S, SWITCH,    repeat,          "",         "",                 "false", \
+    "Scripted: the keys start again after the last one.") \
+  F(S, VECTOR,    stroke,          "m",        "[-1000, 1000]",    "[0, 0, 0]", \
+    "Scripted: swings, like a wave paddle, from where it is to this far away and back.") \
+  F(S, NUMBER,    period,          "s",        "(0, 3600]",        "1", \
+    "Scripted: of the stroke, there and back.") \
+  F(S, REAL,      start,           "s",        "[0, 3600]",        "0", \
+    "Scripted: when the stroke begins.") \
+  F(S, NUMBER,    max_speed,       "m/s",      "(0, 100]",         "1", \
+    "Draggable: it follows the hand no faster.") \
+  F(S, NUMBER,    density,         "kg/m³",    "(0, 100000]",      "500", \
+    "Floating: its mass by its volume; less than the liquid's floats.") \
   V(S, BOX,       box,             SceneBox,      "A box.") \
   V(S, SPHERE,    sphere,          SceneSphere,   "A ball.") \
-  V(S, CYLINDER,  cylinder,        SceneCylinder, "A cylinder, upright before it is turned.")
+  V(S, CYLINDER,  cylinder,        SceneCylinder, "A cylinder, upright before it is turned.") \
+  V(S, CAPSULE,   capsule,         SceneCapsule,  "A cylinder with half balls at its ends, upright before it is turned.") \
+  V(S, STAIRS,    stairs,          SceneStairs,   "A solid flight of stairs that climbs towards +x before it is turned.") \
+  V(S, MESH,      mesh,            SceneMesh,     "A closed triangle mesh from a file.")
 
 #define SCENE_BOX(F, O, L, V, S) \
   F(S, VECTOR,    size,            "m",        "(0, 1000]",        SCENE_REQUIRED, \
@@ -129,6 +217,26 @@
     "Its radius.") \
   F(S, NUMBER,    height,          "m",        "(0, 1000]",        SCENE_REQUIRED, \
     "Its height.")
+
+#define SCENE_CAPSULE(F, O, L, V, S) \
+  F(S, NUMBER,    radius,          "m",        "(0, 1000]",        SCENE_REQUIRED, \
+    "Its radius.") \
+  F(S, NUMBER,    height,          "m",        "(0, 1000]",        SCENE_REQUIRED, \
+    "Its full height, at least twice the radius.")
+
+#define SCENE_STAIRS(F, O, L, V, S) \
+  F(S, VECTOR,    size,            "m",        "(0, 1000]",        SCENE_REQUIRED, \
+    "Full length, height and width of the flight.") \
+  F(S, INTEGER,   steps,           "",         "[1, 1000]",        SCENE_REQUIRED, \
+    "Number of steps.")
+
+#define SCENE_MESH(F, O, L, V, S) \
+  F(S, TEXT,      file,            "",         "",                 SCENE_REQUIRED, \
+    "Relative to the scene's file: OBJ, PLY, STL, OFF, GLB, DAE, FBX or 3DS; one closed surface, at most 64 MiB and 500000 triangles.") \
+  F(S, NUMBER,    scale,           "",         "(0, 1000000]",     "1", \
+    "From the file's lengths to metres.") \
+  F(S, SWITCH,    centre,          "",         "",                 "true", \
+    "The middle of its box is its centre; false: the file's origin is.")
 
 #define SCENE_CAMERA(F, O, L, V, S) \
   F(S, OPTIONAL_VECTOR, eye,       "m",        "[-10000, 10000]",  "null", \
@@ -184,7 +292,7 @@
     "Radius of the spheres drawn, in particle radii.")
 
 #define SCENE_EVENT(F, O, L, V, S) \
-  F(S, CHOICE,    type,            "",         "push | pour | tilt | style | camera | (drag)", SCENE_REQUIRED, \
+  F(S, CHOICE,    type,            "",         "push | pour | tilt | style | camera | drag | emitter", SCENE_REQUIRED, \
     "What happens.") \
   F(S, REAL,      time,            "s",        "[0, 3600]",        "0", \
     "When it begins.") \
@@ -194,7 +302,9 @@
   V(S, POUR,      pour,            ScenePour,       "Fills a box with water, again and again while it lasts.") \
   V(S, TILT,      tilt,            SceneTilt,       "Turns gravity, evenly over the duration.") \
   V(S, STYLE,     style,           SceneStyleEvent, "Changes the style.") \
-  V(S, CAMERA,    camera,          SceneCameraEvent, "Moves the camera, smoothly over the duration.")
+  V(S, CAMERA,    camera,          SceneCameraEvent, "Moves the camera, smoothly over the duration.") \
+  V(S, DRAG,      drag,            SceneDrag,       "Drags a draggable obstacle, evenly over the duration.") \
+  V(S, EMITTER,   emitter,         SceneEmitterEvent, "Turns an emitter on or off.")
 
 #define SCENE_PUSH(F, O, L, V, S) \
   F(S, VECTOR,    origin,          "m",        "[-10000, 10000]",  SCENE_REQUIRED, \
@@ -232,15 +342,36 @@
   F(S, OPTIONAL,  fov,             "degrees",  "(1, 170)",         "null", \
     "Vertical angle of view at the end; null: that of the scene's camera.")
 
+#define SCENE_DRAG(F, O, L, V, S) \
+  F(S, REFERENCE, obstacle,        "",         "obstacles",        SCENE_REQUIRED, \
+    "The draggable obstacle.") \
+  F(S, VECTOR,    position,        "m",        "[-1000, 1000]",    SCENE_REQUIRED, \
+    "Where its centre is wanted at the end.") \
+  F(S, OPTIONAL_VECTOR, rotation,  "degrees",  "[-360, 360]",      "null", \
+    "How it is turned at the end; null: as it was.")
+
+#define SCENE_EMITTER_EVENT(F, O, L, V, S) \
+  F(S, REFERENCE, emitter,         "",         "fluid",            SCENE_REQUIRED, \
+    "The emitter; its place is that in the list of fluid.") \
+  F(S, SWITCH,    on,              "",         "",                 SCENE_REQUIRED, \
+    "Whether it runs from now on.")
+
 /// Every struct but the top one, inner ones first: T(Struct, its table).
 #define SCENE_STRUCTS(T) \
   T(SceneSimulation, SCENE_SIMULATION) \
   T(SceneContainer, SCENE_CONTAINER) \
   T(SceneBlock, SCENE_BLOCK) \
+  T(SceneDrop, SCENE_DROP) \
+  T(SceneEmitter, SCENE_EMITTER) \
   T(SceneFluid, SCENE_FLUID) \
+  T(SceneSink, SCENE_SINK) \
   T(SceneBox, SCENE_BOX) \
   T(SceneSphere, SCENE_SPHERE) \
   T(SceneCylinder, SCENE_CYLINDER) \
+  T(SceneCapsule, SCENE_CAPSULE) \
+  T(SceneStairs, SCENE_STAIRS) \
+  T(SceneMesh, SCENE_MESH) \
+  T(SceneKey, SCENE_KEY) \
   T(SceneObstacle, SCENE_OBSTACLE) \
   T(SceneCamera, SCENE_CAMERA) \
   T(SceneLight, SCENE_LIGHT) \
@@ -252,6 +383,8 @@
   T(SceneTilt, SCENE_TILT) \
   T(SceneStyleEvent, SCENE_STYLE_EVENT) \
   T(SceneCameraEvent, SCENE_CAMERA_EVENT) \
+  T(SceneDrag, SCENE_DRAG) \
+  T(SceneEmitterEvent, SCENE_EMITTER_EVENT) \
   T(SceneEvent, SCENE_EVENT)
 // clang-format on
 

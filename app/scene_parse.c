@@ -120,13 +120,12 @@ static int read_name(const Value *value) {
   return refuse_name(value, &choices, list, name);
 }
 
-static bool read_vector(const Value *value, float *member) {
-  if (!cJSON_IsArray(value->json) || cJSON_GetArraySize(value->json) != 3) {
-    char text[80];
-    if (!cJSON_IsArray(value->json)) return must_be(value, "a list of three numbers");
-    snprintf(text, sizeof text, "must be a list of three numbers, got %d items", cJSON_GetArraySize(value->json));
-    return scene_fail(value->source, value->path, "%s", text);
-  }
+static bool read_numbers(const Value *value, float *member, int count) {
+  char text[80];
+  snprintf(text, sizeof text, "a list of %s numbers", count == 2 ? "two" : "three");
+  if (!cJSON_IsArray(value->json)) return must_be(value, text);
+  if (cJSON_GetArraySize(value->json) != count)
+    return scene_fail(value->source, value->path, "must be %s, got %d items", text, cJSON_GetArraySize(value->json));
   int i = 0;
   const cJSON *item;
   cJSON_ArrayForEach(item, value->json) {
@@ -138,10 +137,29 @@ static bool read_vector(const Value *value, float *member) {
 }
 
 static bool read_direction(const Value *value, float *member) {
-  if (!read_vector(value, member)) return false;
+  if (!read_numbers(value, member, 3)) return false;
   // Its square must not vanish in single precision either.
   float square = member[0] * member[0] + member[1] * member[1] + member[2] * member[2];
   return square >= 1e-20f || scene_fail(value->source, value->path, "must not be the zero vector");
+}
+
+/// Fill with NANs, then read unless it is null.
+static bool read_optional(const Value *value, float *member, int count) {
+  for (int i = 0; i < count; i++) member[i] = NAN;
+  if (cJSON_IsNull(value->json)) return true;
+  return count == 1 ? read_number(value, member) : read_numbers(value, member, count);
+}
+
+/// What a name stands for is looked up when all items are known (scene_complete.c).
+static bool read_reference(const Value *value, SceneReference *member) {
+  *member = (SceneReference){.index = -1};
+  if (cJSON_IsNull(value->json) && value->field->fallback) return true;
+  if (cJSON_IsString(value->json) && *value->json->valuestring) return read_text(value, member->name);
+  double place = cJSON_IsNumber(value->json) ? value->json->valuedouble : -1;
+  if (!(place >= 0 && place <= INT32_MAX && place == floor(place)))
+    return must_be(value, "a name or a whole number that is not negative");
+  member->index = (int32_t)place;
+  return true;
 }
 
 static bool read_value(const Value *value, void *member) {
@@ -170,15 +188,20 @@ static bool read_value(const Value *value, void *member) {
   case SCENE_STYLE:
     return read_name(value) >= 0 && read_text(value, member);
   case SCENE_VECTOR:
-    return read_vector(value, member);
+    return read_numbers(value, member, 3);
   case SCENE_DIRECTION:
     return read_direction(value, member);
   case SCENE_OPTIONAL:
-    *(float *)member = NAN;
-    return cJSON_IsNull(value->json) || read_number(value, member);
+    return read_optional(value, member, 1);
+  case SCENE_OPTIONAL_PAIR:
+    return read_optional(value, member, 2);
   case SCENE_OPTIONAL_VECTOR:
-    for (int i = 0; i < 3; i++) ((float *)member)[i] = NAN;
-    return cJSON_IsNull(value->json) || read_vector(value, member);
+    return read_optional(value, member, 3);
+  case SCENE_OPTIONAL_REAL:
+    *(double *)member = NAN;
+    return cJSON_IsNull(value->json) || read_real(value, member);
+  case SCENE_REFERENCE:
+    return read_reference(value, member);
   default:
     return false; // objects have readers of their own
   }
@@ -187,14 +210,6 @@ static bool read_value(const Value *value, void *member) {
 // ---- Objects and lists ----------------------------------------------------------------------------------------------
 
 static bool read_object(const Value *value, const SceneObject *object, char *members);
-
-/// Whether the key path stands in SCENE_LATER_KEYS.
-static bool later_key(const char *path) {
-  char keys[] = SCENE_LATER_KEYS;
-  for (char *rest = keys, *key; (key = strtok_r(rest, " |", &rest));)
-    if (strcmp(key, path) == 0) return true;
-  return false;
-}
 
 /// Whether the object takes this key, and if so which of its fields it is for.
 static const SceneField *known_key(const SceneObject *object, int32_t variant, const char *key) {
@@ -213,9 +228,6 @@ static const SceneField *known_key(const SceneObject *object, int32_t variant, c
 
 static bool unknown_key(const Value *value, const SceneObject *object, int32_t variant, const char *key, int ordinal) {
   ScenePath path = {value->path, key, ordinal};
-  char keys[SCENE_PATH_SIZE];
-  if (later_key(scene_path_print(&path, keys, sizeof keys)))
-    return scene_fail(value->source, &path, "is not available in this version");
   const char *names[64];
   int count = 0;
   for (int i = 0; i < object->field_count; i++) {

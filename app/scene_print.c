@@ -9,12 +9,12 @@ static void indent(Text *text, int depth) {
   text_format(text, "\n%*s", 2 * depth, "");
 }
 
-static void print_vector(Text *text, const float v[3]) {
+static void print_numbers(Text *text, const float *v, int count) {
   if (v[0] != v[0]) {
     text_add(text, "null");
     return;
   }
-  for (int i = 0; i < 3; i++) {
+  for (int i = 0; i < count; i++) {
     text_add(text, i ? ", " : "[");
     text_add_float(text, v[i]);
   }
@@ -25,6 +25,15 @@ static void print_choice(Text *text, const SceneField *field, int32_t number) {
   SceneChoices choices;
   scene_choices(field, &choices);
   text_add_json_string(text, choices.names[number]);
+}
+
+static void print_reference(Text *text, const SceneReference *reference) {
+  if (*reference->name)
+    text_add_json_string(text, reference->name);
+  else if (reference->index < 0)
+    text_add(text, "null");
+  else
+    text_format(text, "%d", (int)reference->index);
 }
 
 static void print_list(Text *text, const SceneField *field, const char *owner, int depth) {
@@ -50,6 +59,7 @@ static void print_value(Text *text, const SceneField *field, const char *owner, 
     text_add_float(text, *(const float *)member);
     break;
   case SCENE_REAL:
+  case SCENE_OPTIONAL_REAL:
     text_add_double(text, *(const double *)member);
     break;
   case SCENE_INTEGER:
@@ -71,7 +81,13 @@ static void print_value(Text *text, const SceneField *field, const char *owner, 
   case SCENE_VECTOR:
   case SCENE_DIRECTION:
   case SCENE_OPTIONAL_VECTOR:
-    print_vector(text, member);
+    print_numbers(text, member, 3);
+    break;
+  case SCENE_OPTIONAL_PAIR:
+    print_numbers(text, member, 2);
+    break;
+  case SCENE_REFERENCE:
+    print_reference(text, member);
     break;
   case SCENE_OBJECT:
     print_object(text, field->object, member, depth);

@@ -13,7 +13,9 @@ static const char introduction[] =
     "default\n"
     "must be given; unknown keys are errors. `lido check SCENE` prints a scene with every default filled in, and\n"
     "`--set key.path=value` changes any key from the command line: `--set simulation.cfl=0.3`,\n"
-    "`--set fluid.0.velocity=[1,0,0]`, `--set render.style=points`.\n"
+    "`--set fluid.0.velocity=[1,0,0]`, `--set render.style=points`. An obstacle or emitter is called by its `name` or "
+    "by\n"
+    "its place in the list, from 0.\n"
     "[scene.schema.json](../configs/scene.schema.json) lets an editor complete and check scenes.\n"
     "\n"
     "```json\n"
@@ -21,7 +23,9 @@ static const char introduction[] =
     "  \"version\": 1,\n"
     "  \"container\": {\"min\": [0, 0, 0], \"max\": [2, 1, 1]},\n"
     "  \"fluid\": [{\"type\": \"block\", \"min\": [0, 0, 0], \"max\": [0.5, 0.8, 1]}],\n"
-    "  \"obstacles\": [{\"type\": \"sphere\", \"radius\": 0.15, \"position\": [1.3, 0.15, 0.5]}],\n"
+    "  \"obstacles\": [{\"type\": \"sphere\", \"radius\": 0.15, \"position\": [1.3, 0.15, 0.5]},\n"
+    "                {\"type\": \"box\", \"size\": [0.2, 0.1, 0.2], \"position\": [1.3, 0.6, 0.5], \"motion\": "
+    "\"floating\"}],\n"
     "  \"events\": [{\"type\": \"tilt\", \"time\": 2, \"duration\": 1, \"gravity\": [3, -9.3, 0]}]\n"
     "}\n"
     "```\n";
@@ -45,7 +49,12 @@ static const char *type_name(const SceneField *field) {
   case SCENE_DIRECTION:
     return "3 numbers";
   case SCENE_OPTIONAL:
+  case SCENE_OPTIONAL_REAL:
     return "number or null";
+  case SCENE_OPTIONAL_PAIR:
+    return "2 numbers or null";
+  case SCENE_REFERENCE:
+    return field->fallback ? "name, index or null" : "name or index";
   case SCENE_OPTIONAL_VECTOR:
     return "3 numbers or null";
   case SCENE_OBJECT:
@@ -70,6 +79,9 @@ static void add_range(Text *text, const SceneField *field) {
     break;
   case SCENE_TEXT:
     text_format(text, "at most %d bytes", SCENE_TEXT_SIZE - 1);
+    break;
+  case SCENE_REFERENCE:
+    text_format(text, "in `%s`", field->range);
     break;
   case SCENE_LIST:
     text_format(text, "at most %d", field->limit);

@@ -30,8 +30,8 @@ static void add_number(Text *text, const SceneField *field, const char *type) {
   add_interval(text, field);
 }
 
-static void add_vector(Text *text, const SceneField *field, const char *type) {
-  text_format(text, "\"type\": %s, \"minItems\": 3, \"maxItems\": 3, \"items\": {", type);
+static void add_numbers(Text *text, const SceneField *field, const char *type, int count) {
+  text_format(text, "\"type\": %s, \"minItems\": %d, \"maxItems\": %d, \"items\": {", type, count, count);
   add_number(text, field, "\"number\"");
   text_add(text, "}");
 }
@@ -58,6 +58,7 @@ static void add_constraints(Text *text, const SceneField *field) {
     add_number(text, field, "\"integer\"");
     break;
   case SCENE_OPTIONAL:
+  case SCENE_OPTIONAL_REAL:
     add_number(text, field, "[\"number\", \"null\"]");
     break;
   case SCENE_SWITCH:
@@ -72,10 +73,17 @@ static void add_constraints(Text *text, const SceneField *field) {
     break;
   case SCENE_VECTOR:
   case SCENE_DIRECTION:
-    add_vector(text, field, "\"array\"");
+    add_numbers(text, field, "\"array\"", 3);
+    break;
+  case SCENE_OPTIONAL_PAIR:
+    add_numbers(text, field, "[\"array\", \"null\"]", 2);
     break;
   case SCENE_OPTIONAL_VECTOR:
-    add_vector(text, field, "[\"array\", \"null\"]");
+    add_numbers(text, field, "[\"array\", \"null\"]", 3);
+    break;
+  case SCENE_REFERENCE:
+    text_format(text, "\"type\": [\"string\", \"integer\"%s], \"minLength\": 1, \"maxLength\": %d, \"minimum\": 0",
+                field->fallback ? ", \"null\"" : "", SCENE_TEXT_SIZE - 1);
     break;
   default:
     break; // objects and lists have their own form

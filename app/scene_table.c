@@ -58,17 +58,10 @@ void scene_choices(const SceneField *field, SceneChoices *choices) {
     style_choices(choices);
     return;
   }
-  // "a | b | (c)": names in brackets come later, and stand last.
   snprintf(choices->text, sizeof choices->text, "%s", field->range);
-  for (char *rest = choices->text, *name; (name = strtok_r(rest, " |", &rest));) {
-    bool later = *name == '(';
-    if (later) {
-      name++;
-      name[strlen(name) - 1] = 0;
-    }
-    choices->names[choices->with_later++] = name;
-    if (!later) choices->count++;
-  }
+  for (char *rest = choices->text, *name; (name = strtok_r(rest, " |", &rest));)
+    choices->names[choices->count++] = name;
+  choices->with_later = choices->count;
 }
 
 void scene_choices_list(const SceneChoices *choices, char *list, size_t size) {

@@ -17,7 +17,10 @@ typedef enum SceneType {
   SCENE_VECTOR,
   SCENE_DIRECTION,
   SCENE_OPTIONAL,
+  SCENE_OPTIONAL_REAL,
+  SCENE_OPTIONAL_PAIR,
   SCENE_OPTIONAL_VECTOR,
+  SCENE_REFERENCE,
   SCENE_OBJECT,  ///< `object` says what is in it
   SCENE_LIST,    ///< of `object`s
   SCENE_VARIANT  ///< fields of the same JSON object, there when its "type" is `key`

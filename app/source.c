@@ -41,17 +41,16 @@ static bool open_scene(Source *source, AppError *error) {
   const Options *options = source->options;
   if (!scene_load(&source->scene, options->source, options->sets, options->set_count, error)) return false;
   source->has_scene = true;
-  SimWorldDef def = scene_world_def(&source->scene);
-  def.threads = options->threads;
-  SimError sim_error;
-  source->world = sim_world_create(&def, &sim_error);
-  if (!source->world) return app_fail(error, APP_BAD_INPUT, "%s: %s", options->source, sim_error.message);
+  source->world = scene_world_create(&source->scene, options->threads, error);
+  if (!source->world) return false;
 
   double frames = ceil(source->scene.simulation.duration * options->fps - 1e-6);
   source->first = options->first_frame;
   source->end = options->last_frame >= 0 ? (int64_t)options->last_frame + 1 : frames < 1 ? 1 : (int64_t)frames;
   if (source->first >= source->end)
     return app_fail(error, APP_BAD_INPUT, "--frames: the scene ends with frame %" PRId64, source->end - 1);
+  SimCounts counts = sim_world_counts(source->world);
+  if (!options->quiet) scene_tell_left_out(&source->scene, &counts);
   return true;
 }
 

@@ -123,6 +123,12 @@ static void follow_timeline(Window *window) {
   window->input.camera = camera;
 }
 
+// What the hand can grasp: the bodies as they are seen.
+static void show_bodies(Window *window) {
+  const SimFrame *frame = &live_frame(window->live)->frame;
+  window->input.bodies = (GrabBodies){frame->obstacle_count, frame->obstacles, window->scene->defs.obstacles};
+}
+
 static void take_result(Window *window) {
   switch (live_poll(window->live, 0)) {
   case LIVE_NOTHING:
@@ -131,6 +137,7 @@ static void take_result(Window *window) {
     fprintf(stderr, "lido: %s\n", live_failure(window->live));
     break;
   case LIVE_NEW_FRAME: {
+    show_bodies(window);
     double now = glfwGetTime(), elapsed = now - window->last_frame_time;
     window->last_frame_time = now;
     if (elapsed > 0) window->speed = running_mean(window->speed, 1 / (window->options->fps * elapsed));
@@ -162,6 +169,12 @@ static LiveInput gather(Window *window) {
   input.push_count = interact_take(&window->input.hand, &window->strength, &view, window->input.width,
                                    window->input.height, now - window->hand_time, input.pushes);
   window->hand_time = now;
+  if (window->input.grab.moved) {
+    input.drag = true;
+    input.body = window->input.grab.body;
+    memcpy(input.position, window->input.grab.target, sizeof input.position);
+    window->input.grab.moved = false;
+  }
   if (input.set_gravity) {
     float gravity[3];
     events_gravity(window->scene, ((double)live_frame(window->live)->frame.index + 0.5) * step, gravity);
@@ -183,6 +196,9 @@ static bool may_advance(const Window *window) {
 static void reset(Window *window) {
   window->lean[0] = window->lean[1] = 0;
   window->leaning = false;
+  // The body slips out of the hand: it is back at its start.
+  if (window->input.drag == WINDOW_DRAG_BODY) window->input.drag = WINDOW_DRAG_NONE;
+  window->input.grab = (Grab){0};
   window->notice[0] = '\0';
   live_reset(window->live, render_style_needs(window->settings.style));
   window->input.reset = false;
@@ -436,7 +452,9 @@ static bool start(Window *window, AppError *error) {
   if (options->stats && !(window->stats = stats_open(options->stats, error))) return false;
   window->strength = interact_strength(&live_frame(window->live)->frame.container, window->scene->simulation.gravity,
                                        window->scene->simulation.particle_radius);
+  if (!options->quiet) scene_tell_left_out(window->scene, &live_frame(window->live)->counts);
   set_up_eye(window);
+  show_bodies(window);
   window_input_connect(window->glfw, &window->input);
   window->due = window->hand_time = window->last_frame_time = glfwGetTime();
   notify(window, "%s", "H: help");

@@ -69,6 +69,12 @@ void window_input_key(WindowInput *input, int key, int mods, bool repeated) {
 
 // ---- Mouse ----------------------------------------------------------------------------------------------------------
 
+static bool grasps_body(WindowInput *input) {
+  RenderView view = camera_view(&input->camera);
+  return grab_begin(&input->grab, &input->bodies, &view, input->cursor[0], input->cursor[1], input->width,
+                    input->height);
+}
+
 static void begin_drag(WindowInput *input, int button, int mods) {
   bool shift = mods & GLFW_MOD_SHIFT, control = mods & GLFW_MOD_CONTROL;
   bool water = button == GLFW_MOUSE_BUTTON_RIGHT || (button == GLFW_MOUSE_BUTTON_LEFT && control);
@@ -77,7 +83,7 @@ static void begin_drag(WindowInput *input, int button, int mods) {
   else if (button == GLFW_MOUSE_BUTTON_MIDDLE || (button == GLFW_MOUSE_BUTTON_LEFT && shift))
     input->drag = WINDOW_DRAG_PAN;
   else if (button == GLFW_MOUSE_BUTTON_LEFT)
-    input->drag = WINDOW_DRAG_ORBIT;
+    input->drag = grasps_body(input) ? WINDOW_DRAG_BODY : WINDOW_DRAG_ORBIT;
   else
     return;
   input->drag_button = button;
@@ -89,6 +95,7 @@ void window_input_button(WindowInput *input, int button, int mods, bool down) {
   if (down && input->drag == WINDOW_DRAG_NONE) begin_drag(input, button, mods);
   if (down || input->drag == WINDOW_DRAG_NONE || button != input->drag_button) return;
   if (input->drag == WINDOW_DRAG_WATER) interact_end(&input->hand);
+  if (input->drag == WINDOW_DRAG_BODY) grab_end(&input->grab);
   input->drag = WINDOW_DRAG_NONE;
 }
 
@@ -100,6 +107,10 @@ void window_input_cursor(WindowInput *input, float x, float y) {
   if (input->drag == WINDOW_DRAG_ORBIT) camera_orbit(&input->camera, dx, dy, input->height);
   if (input->drag == WINDOW_DRAG_PAN) camera_pan(&input->camera, dx, dy, input->height);
   if (input->drag == WINDOW_DRAG_WATER) interact_move(&input->hand, x, y);
+  if (input->drag == WINDOW_DRAG_BODY) {
+    RenderView view = camera_view(&input->camera);
+    grab_move(&input->grab, &view, x, y, input->width, input->height);
+  }
   if (input->drag == WINDOW_DRAG_ORBIT || input->drag == WINDOW_DRAG_PAN) input->changed = true;
 }
 

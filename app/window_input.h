@@ -4,16 +4,25 @@
 #define LIDO_APP_WINDOW_INPUT_H
 
 #include "app/camera.h"
+#include "app/grab.h"
 #include "app/hud.h"
 #include "app/interact.h"
 
 struct GLFWwindow;
 
-typedef enum WindowDrag { WINDOW_DRAG_NONE, WINDOW_DRAG_ORBIT, WINDOW_DRAG_PAN, WINDOW_DRAG_WATER } WindowDrag;
+typedef enum WindowDrag {
+  WINDOW_DRAG_NONE,
+  WINDOW_DRAG_ORBIT,
+  WINDOW_DRAG_PAN,
+  WINDOW_DRAG_WATER,
+  WINDOW_DRAG_BODY
+} WindowDrag;
 
 typedef struct WindowInput {
   Camera camera;     ///< moved by drags and the wheel
   Interact hand;     ///< in the water
+  GrabBodies bodies; ///< of the frame that is shown: what a hand can grasp. The caller's to set
+  Grab grab;         ///< the body in the hand
   float lean[2];     ///< −1, 0 or 1: arrow keys held, to the right and away
   int width, height; ///< pixels of the framebuffer; 0 while minimised
   float scale;       ///< of the monitor's content, 1: a pixel is a dot

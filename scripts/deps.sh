@@ -6,6 +6,7 @@ set -eu
 
 build='gcc libc6-dev make cmake pkg-config
   libglfw3-dev libepoxy-dev libegl-dev libgl-dev libcjson-dev libcglm-dev libspng-dev libode-dev
+  libassimp-dev
   libgl1-mesa-dri libegl1 libegl-mesa0 libgl1 ffmpeg'
 optional='libosmesa6-dev' # left Mesa in 25.1
 test='libcmocka-dev clang libomp-dev git xvfb xauth xdotool python3 python3-meshio python3-jsonschema'
@@ -21,7 +22,7 @@ if ! command -v apt-get >/dev/null 2>&1; then
     command -v "$tool" >/dev/null 2>&1 || missing="$missing $tool"
   done
   if command -v pkg-config >/dev/null 2>&1; then
-    for module in glfw3 epoxy egl libcjson cglm spng ode; do
+    for module in glfw3 epoxy egl libcjson cglm spng ode assimp; do
       pkg-config --exists "$module" || missing="$missing $module"
     done
     if [ "${1:-}" = test ]; then

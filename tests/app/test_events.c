@@ -292,6 +292,133 @@ static void before_the_first_tilt_gravity_is_left_alone(void **state) {
   scene_free(&scene);
 }
 
+static void a_shake_is_made_of_tilts(void **state) {
+  (void)state;
+  // To the right, to the left, and upright again: level in between and at the end, the same strength at the turns.
+  Scene scene = load("{\"version\": 1, \"container\": {\"shape\": \"glass\"}, \"events\": ["
+                     "{\"type\": \"tilt\", \"time\": 1, \"duration\": 0.25, \"gravity\": [3, -9.34, 0]},"
+                     "{\"type\": \"tilt\", \"time\": 1.25, \"duration\": 0.5, \"gravity\": [-3, -9.34, 0]},"
+                     "{\"type\": \"tilt\", \"time\": 1.75, \"duration\": 0.25, \"gravity\": [0, -9.81, 0]}]}");
+  const struct {
+    double time, x, y;
+  } truth[] = {{0.5, 0, -9.81},   {1.125, 1.5, -9.575}, {1.25, 3, -9.34}, {1.5, 0, -9.34},
+               {1.75, -3, -9.34}, {2, 0, -9.81},        {60, 0, -9.81}};
+  for (size_t i = 0; i < sizeof truth / sizeof *truth; i++) {
+    float gravity[3];
+    events_gravity(&scene, truth[i].time, gravity);
+    assert_near(gravity[0], truth[i].x, 1e-5);
+    assert_near(gravity[1], truth[i].y, 1e-5);
+    assert_near(gravity[2], 0, 1e-6);
+  }
+  scene_free(&scene);
+}
+
+// ---- Drag -------------------------------------------------------------------------------------------------------------
+
+#define BALLS                                                                                                          \
+  "\"obstacles\": [{\"type\": \"sphere\", \"radius\": 0.1, \"position\": [0.5, 0.5, 0.5]},"                            \
+  "{\"type\": \"sphere\", \"name\": \"ball\", \"radius\": 0.1, \"position\": [1, 0.5, 0.5], \"motion\": "              \
+  "\"draggable\","                                                                                                     \
+  " \"max_speed\": 100}]"
+#define DRAGS                                                                                                          \
+  "{\"version\": 1, " BALLS ", \"events\": ["                                                                          \
+  "{\"type\": \"drag\", \"obstacle\": \"ball\", \"time\": 1, \"duration\": 2, \"position\": [2, 0.5, 0.5]},"           \
+  "{\"type\": \"drag\", \"obstacle\": 1, \"time\": 2, \"duration\": 1, \"position\": [1.5, 1, 0.5], \"rotation\": "    \
+  "[0, 90, "                                                                                                           \
+  "0]},"                                                                                                               \
+  "{\"type\": \"drag\", \"obstacle\": 1, \"time\": 4, \"position\": [0.25, 0.25, 0.25], \"rotation\": [0, 0, 0]}]}"
+
+static void a_drag_moves_evenly_from_where_the_last_one_came_to(void **state) {
+  (void)state;
+  Scene scene = load(DRAGS);
+  const struct {
+    double time;
+    float want[3], degrees; // about y
+  } truth[] = {{0, {1, 0.5f, 0.5f}, 0},    {1, {1, 0.5f, 0.5f}, 0},        {1.5, {1.25f, 0.5f, 0.5f}, 0},
+               {2, {1.5f, 0.5f, 0.5f}, 0}, {2.5, {1.5f, 0.75f, 0.5f}, 45}, {3, {1.5f, 1, 0.5f}, 90},
+               {3.9, {1.5f, 1, 0.5f}, 90}, {4, {0.25f, 0.25f, 0.25f}, 0},  {50, {0.25f, 0.25f, 0.25f}, 0}};
+  for (size_t i = 0; i < sizeof truth / sizeof *truth; i++) {
+    float position[3], rotation[4];
+    events_drag(&scene, 1, truth[i].time, position, rotation);
+    for (int k = 0; k < 3; k++) assert_near(position[k], truth[i].want[k], 1e-6);
+    double half = truth[i].degrees * 3.14159265358979 / 360;
+    assert_near(rotation[1], sin(half), 1e-6);
+    assert_near(rotation[3], cos(half), 1e-6);
+  }
+  scene_free(&scene);
+}
+
+static void body_position(SimWorld *world, int body, float position[3]) {
+  SimFrameBuffer *buffer = sim_frame_buffer_create();
+  SimError error;
+  const SimFrame *frame = sim_world_frame(world, SIM_NEED_NOTHING, buffer, &error);
+  assert_non_null(frame);
+  memcpy(position, frame->obstacles[body].position, 3 * sizeof *position);
+  sim_frame_buffer_destroy(buffer);
+}
+
+static void a_dragged_body_is_where_it_is_wanted(void **state) {
+  (void)state;
+  Scene scene = load(DRAGS);
+  SimWorld *world = make_world(&scene);
+  for (int n = 0; n < 90; n++) { // frames of 1/20 s, up to 4.5 s
+    float want[3], turn[4], is[3];
+    events_drag(&scene, 1, n / 20.0 - 1e-9, want, turn); // a jump takes place in the frame that follows
+    body_position(world, 1, is);
+    for (int k = 0; k < 3; k++) assert_near(is[k], want[k], 1e-3);
+    body_position(world, 0, is);
+    assert_near(is[0], 0.5, 0);
+    apply(&scene, n / 20.0, 1 / 20.0, world);
+    advance(world, 1 / 20.0);
+  }
+  sim_world_destroy(world);
+  scene_free(&scene);
+}
+
+static void after_a_drag_the_hand_has_the_body(void **state) {
+  (void)state;
+  Scene scene = load("{\"version\": 1, " BALLS ", \"events\": [{\"type\": \"drag\", \"obstacle\": 1, \"time\": 0.1,"
+                     " \"duration\": 0.2, \"position\": [1.2, 0.5, 0.5]}]}");
+  SimWorld *world = make_world(&scene);
+  const float elsewhere[3] = {2, 0.75f, 0.25f};
+  float is[3];
+  for (int n = 0; n < 20; n++) {
+    apply(&scene, n * 0.05, 0.05, world);
+    if (n == 10) assert_true(sim_world_drag(world, 1, elsewhere, NULL));
+    advance(world, 0.05);
+  }
+  body_position(world, 1, is);
+  for (int k = 0; k < 3; k++) assert_near(is[k], elsewhere[k], 1e-3);
+  sim_world_destroy(world);
+  scene_free(&scene);
+}
+
+// ---- Emitter ------------------------------------------------------------------------------------------------------------
+
+static void emitters_run_while_they_are_on(void **state) {
+  (void)state;
+  Scene scene =
+      load("{\"version\": 1, \"simulation\": {\"particle_radius\": 0.025, \"gravity\": [0, 0, 0]}, \"fluid\": ["
+           "{\"type\": \"block\", \"min\": [0, 0, 0], \"max\": [0.1, 0.1, 0.1]},"
+           "{\"type\": \"emitter\", \"name\": \"tap\", \"diameter\": 0.2, \"position\": [0.5, 1, 0.5],"
+           " \"direction\": [1, 0, 0], \"speed\": 1}],"
+           " \"events\": [{\"type\": \"emitter\", \"emitter\": \"tap\", \"time\": 0.2, \"on\": false},"
+           " {\"type\": \"emitter\", \"emitter\": 1, \"time\": 0.6, \"on\": true}]}");
+  SimWorld *world = make_world(&scene);
+  int64_t emitted[21];
+  for (int n = 0; n < 20; n++) {
+    emitted[n] = sim_world_counts(world).emitted;
+    apply(&scene, n * 0.05, 0.05, world);
+    advance(world, 0.05);
+  }
+  emitted[20] = sim_world_counts(world).emitted;
+  assert_true(emitted[4] > 0);
+  assert_int_equal(emitted[12], emitted[4]); // shut from 0.2 s to 0.6 s
+  assert_true(emitted[20] > emitted[12]);
+  sim_world_destroy(world);
+  scene_free(&scene);
+}
+
 // ---- Style and camera -------------------------------------------------------------------------------------------------
 
 static void the_style_changes_at_its_time(void **state) {
@@ -384,6 +511,11 @@ int main(void) {
       cmocka_unit_test(a_tilt_reaches_its_gravity_linearly),
       cmocka_unit_test(tilted_water_falls_as_it_must),
       cmocka_unit_test(before_the_first_tilt_gravity_is_left_alone),
+      cmocka_unit_test(a_shake_is_made_of_tilts),
+      cmocka_unit_test(a_drag_moves_evenly_from_where_the_last_one_came_to),
+      cmocka_unit_test(a_dragged_body_is_where_it_is_wanted),
+      cmocka_unit_test(after_a_drag_the_hand_has_the_body),
+      cmocka_unit_test(emitters_run_while_they_are_on),
       cmocka_unit_test(the_style_changes_at_its_time),
       cmocka_unit_test(the_camera_moves_smoothly),
       cmocka_unit_test(nothing_is_remembered),

@@ -148,6 +148,27 @@ static void pushes_and_gravity_reach_the_water(void **state) {
   scene_free(&scene);
 }
 
+static void a_drag_reaches_its_body(void **state) {
+  (void)state;
+  Scene scene =
+      load("{\"version\": 1, \"obstacles\": [{\"type\": \"box\", \"size\": [0.1, 0.1, 0.1], \"position\": [1, 1, 0.5]},"
+           "{\"type\": \"box\", \"size\": [0.1, 0.1, 0.1], \"position\": [1, 0.5, 0.5], \"motion\": \"draggable\","
+           " \"max_speed\": 6}]}");
+  Live *live = open_live(&scene, SIM_NEED_NOTHING);
+  LiveInput input = {.drag = true, .body = 1, .position = {1.5f, 0.5f, 0.5f}};
+  // 6 m/s is 0.1 m a frame: after five frames it is there, and stays without being told again.
+  for (int n = 1; n <= 8; n++) {
+    live_advance(live, &input);
+    assert_int_equal(wait_for(live), LIVE_NEW_FRAME);
+    const SimObstacle *bodies = live_frame(live)->frame.obstacles;
+    assert_true(fabs(bodies[1].position[0] - (1 + 0.1 * fmin(n, 5))) < 0.011);
+    assert_true(bodies[0].position[0] == 1);
+    input = (LiveInput){0};
+  }
+  live_destroy(live);
+  scene_free(&scene);
+}
+
 // One push more than a world takes, from 0.05 s (frame 3) on.
 static Scene scene_that_fails(void) {
   static char text[8192];
@@ -221,6 +242,7 @@ int main(void) {
       cmocka_unit_test(a_reset_starts_the_same_again),
       cmocka_unit_test(a_refresh_adds_what_a_style_needs),
       cmocka_unit_test(pushes_and_gravity_reach_the_water),
+      cmocka_unit_test(a_drag_reaches_its_body),
       cmocka_unit_test(a_failure_keeps_the_last_good_frame),
       cmocka_unit_test(ending_in_the_middle_of_a_job_leaves_nothing),
       cmocka_unit_test(a_world_that_cannot_be_made_is_told),

@@ -93,6 +93,162 @@ static void test_world_def_holds_the_scene(void **state) {
   scene_free(&scene);
 }
 
+// Everything that moves, pours or swallows.
+static const char *const moving = //
+    "{\"version\": 1, \"simulation\": {\"kinematic_viscosity\": 0.5, \"surface_tension\": 0.25, \"vorticity\": 0.125,\n"
+    "  \"max_particles\": 5000, \"reuse\": true, \"colour_diffusion\": 0.75, \"particle_radius\": 0.05},\n"
+    "\"container\": {\"shape\": \"glass\", \"min\": [-1, 0, -1], \"max\": [1, 2, 1], \"friction\": 0.5},\n"
+    "\"fluid\": [\n"
+    "  {\"type\": \"emitter\", \"diameter\": 0.25, \"position\": [0, 1.5, 0], \"direction\": [0, -3, 0]},\n"
+    "  {\"type\": \"drop\", \"centre\": [0, 1, 0], \"radius\": 0.25, \"velocity\": [0, -2, 0], \"colour\": [0, 0.5, "
+    "1]},\n"
+    "  {\"type\": \"block\", \"min\": [-0.5, 0, -0.5], \"max\": [0.5, 0.5, 0.5]},\n"
+    "  {\"type\": \"emitter\", \"name\": \"wide\", \"shape\": \"rectangle\", \"size\": [0.5, 0.25], \"position\": "
+    "[0.25, 0, 0],\n"
+    "   \"direction\": [0, 0, 2], \"speed\": 3, \"start\": 1, \"stop\": 2.5, \"colour\": [1, 0, 0], \"obstacle\": "
+    "\"ball\"}],\n"
+    "\"sinks\": [{\"min\": [0.5, 0, 0.5], \"max\": [1, 0.5, 1]}],\n"
+    "\"obstacles\": [\n"
+    "  {\"type\": \"capsule\", \"radius\": 0.125, \"height\": 0.5, \"position\": [0, 1, 0], \"motion\": \"scripted\", "
+    "\"friction\": "
+    "0.25,\n"
+    "   \"keys\": [{\"time\": 1, \"position\": [0, 1, 0]}, {\"time\": 2, \"position\": [1, 1, 0], \"rotation\": [90, "
+    "0, 0]}],\n"
+    "   \"repeat\": true, \"stroke\": [0, 0.5, 0], \"period\": 4, \"start\": 3},\n"
+    "  {\"type\": \"stairs\", \"size\": [1, 0.5, 0.25], \"steps\": 5, \"position\": [0, 0.25, 0]},\n"
+    "  {\"type\": \"sphere\", \"name\": \"ball\", \"radius\": 0.25, \"position\": [0, 0.5, 0], \"motion\": "
+    "\"draggable\", "
+    "\"max_speed\": 2},\n"
+    "  {\"type\": \"box\", \"size\": [1, 1, 1], \"position\": [0, 0.5, 0], \"motion\": \"floating\", \"density\": "
+    "250}],\n"
+    "\"events\": [{\"type\": \"drag\", \"obstacle\": \"ball\", \"position\": [0.5, 0.5, 0]},\n"
+    "  {\"type\": \"drag\", \"obstacle\": 2, \"position\": [0, 0.5, 0], \"rotation\": [0, 90, 0]},\n"
+    "  {\"type\": \"emitter\", \"emitter\": \"wide\", \"on\": false}, {\"type\": \"emitter\", \"emitter\": 0, \"on\": "
+    "true}]}\n";
+
+static void test_world_def_holds_the_method(void **state) {
+  (void)state;
+  Scene scene = load(moving);
+  SimWorldDef def = scene_world_def(&scene);
+  assert_true(def.kinematic_viscosity == 0.5f && def.surface_tension == 0.25f && def.vorticity == 0.125f);
+  assert_true(def.max_particles == 5000 && def.reuse && def.colour_diffusion == 0.75f);
+  assert_int_equal(def.container.shape, SIM_CONTAINER_GLASS);
+  assert_true(def.container_friction == 0.5f);
+  scene_free(&scene);
+  scene = load("{\"version\": 1, \"simulation\": {\"solver\": \"sph\"}}");
+  assert_int_equal(scene_world_def(&scene).solver, SIM_SOLVER_SPH);
+  scene_free(&scene);
+}
+
+/// Turned by the quaternion, `from` must become `to`.
+static void assert_turns(const float q[4], const float from[3], const float to[3]) {
+  float t[3], out[3];
+  for (int k = 0; k < 3; k++) t[k] = 2 * (q[(k + 1) % 3] * from[(k + 2) % 3] - q[(k + 2) % 3] * from[(k + 1) % 3]);
+  for (int k = 0; k < 3; k++) {
+    out[k] = from[k] + q[3] * t[k] + q[(k + 1) % 3] * t[(k + 2) % 3] - q[(k + 2) % 3] * t[(k + 1) % 3];
+    assert_float_equal(out[k], to[k], 1e-6);
+  }
+}
+
+static void test_world_def_holds_water_of_every_kind(void **state) {
+  (void)state;
+  Scene scene = load(moving);
+  SimWorldDef def = scene_world_def(&scene);
+  assert_int_equal(def.block_count, 1);
+  assert_true(def.blocks[0].max[1] == 0.5f);
+  assert_int_equal(def.drop_count, 1);
+  assert_true(def.drops[0].centre[1] == 1 && def.drops[0].radius == 0.25f && def.drops[0].velocity[1] == -2);
+  assert_true(def.drops[0].colour[2] == 1);
+  assert_int_equal(def.sink_count, 1);
+  assert_true(def.sinks[0].min[0] == 0.5f && def.sinks[0].max[1] == 0.5f);
+  assert_int_equal(def.emitter_count, 2);
+  const SimEmitterDef *tap = &def.emitters[0], *wide = &def.emitters[1];
+  assert_true(tap->shape == SIM_EMITTER_DISC && tap->size[0] == 0.25f && tap->speed == 1 && tap->obstacle == -1);
+  assert_true(tap->start == 0 && isinf(tap->stop));
+  assert_true(wide->shape == SIM_EMITTER_RECTANGLE && wide->size[0] == 0.5f && wide->size[1] == 0.25f);
+  assert_true(wide->speed == 3 && wide->start == 1 && wide->stop == 2.5 && wide->colour[0] == 1);
+  assert_true(wide->position[0] == 0.25f && wide->obstacle == 2);
+  // 10 x 10 x 5 in the block, and the drop by its volume: 4/3 pi 2.5^3.
+  assert_true(scene_particle_count(&scene) == 500 + 65);
+  scene_free(&scene);
+}
+
+static void test_emitters_are_turned_to_their_direction(void **state) {
+  (void)state;
+  static const float x[3] = {1, 0, 0}, y[3] = {0, 1, 0};
+  const struct {
+    const char *direction, *up;
+    float along[3], first[3];
+  } rows[] = {{"[1, 0, 0]", "[0, 1, 0]", {1, 0, 0}, {0, 1, 0}},
+              {"[-5, 0, 0]", "[0, 1, 0]", {-1, 0, 0}, {0, 1, 0}},
+              {"[0, 0, 2]", "[0, 1, 0]", {0, 0, 1}, {0, 1, 0}},
+              {"[0, 0, -1]", "[1, 1, 0]", {0, 0, -1}, {0.70710678f, 0.70710678f, 0}},
+              {"[0, -1, 0]", "[0, 0, 7]", {0, -1, 0}, {0, 0, 1}},
+              {"[0, -1, 0]", "[0, 1, 0]", {0, -1, 0}, {1, 0, 0}},
+              {"[2, 0, 0]", "[1, 0, 0]", {1, 0, 0}, {0, 1, 0}},
+              {"[3, -4, 0]", "[0, 1, 0]", {0.6f, -0.8f, 0}, {0.8f, 0.6f, 0}},
+              {"[-1, 0, 0]", "[0, -1, 0]", {-1, 0, 0}, {0, -1, 0}},
+              {"[0, 1, 0]", "[-1, 0, 0]", {0, 1, 0}, {-1, 0, 0}}};
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    char text[400];
+    snprintf(text, sizeof text,
+             "{\"version\": 1, \"fluid\": [{\"type\": \"emitter\", \"diameter\": 0.1, \"position\": [1, 1, 0.5], "
+             "\"direction\": %s, \"up\": %s}]}",
+             rows[i].direction, rows[i].up);
+    Scene scene = load(text);
+    const float *q = scene_world_def(&scene).emitters[0].rotation;
+    assert_turns(q, x, rows[i].along);
+    assert_turns(q, y, rows[i].first);
+    scene_free(&scene);
+  }
+}
+
+static void test_world_def_holds_bodies_and_their_motion(void **state) {
+  (void)state;
+  Scene scene = load(moving);
+  SimWorldDef def = scene_world_def(&scene);
+  const SimObstacleDef *capsule = &def.obstacles[0], *stairs = &def.obstacles[1], *ball = &def.obstacles[2];
+  assert_int_equal(def.obstacle_count, 4);
+  assert_true(capsule->body.shape == SIM_CAPSULE && capsule->body.size[0] == 0.25f && capsule->body.size[1] == 0.5f);
+  assert_true(capsule->motion == SIM_SCRIPTED && capsule->friction == 0.25f && capsule->repeat);
+  assert_true(capsule->key_count == 2 && capsule->keys[0].time == 1 && capsule->keys[0].rotation[3] == 1);
+  assert_true(capsule->keys[1].position[0] == 1);
+  assert_float_equal(capsule->keys[1].rotation[0], 0.70710678f, 1e-6);
+  assert_true(capsule->stroke[1] == 0.5f && capsule->period == 4 && capsule->start == 3);
+  assert_true(stairs->body.shape == SIM_STAIRS && stairs->body.steps == 5 && stairs->body.size[2] == 0.25f);
+  assert_true(stairs->motion == SIM_STATIC && stairs->key_count == 0);
+  assert_true(ball->motion == SIM_DRAGGABLE && ball->max_speed == 2);
+  assert_true(def.obstacles[3].motion == SIM_FLOATING && def.obstacles[3].density == 250);
+  scene_free(&scene);
+}
+
+static void test_names_find_their_items(void **state) {
+  (void)state;
+  Scene scene = load(moving);
+  assert_int_equal(scene.events[0].drag.obstacle.index, 2);
+  assert_int_equal(scene.events[1].drag.obstacle.index, 2);
+  assert_int_equal(scene.events[2].emitter.emitter.index, 3); // in the list of fluid
+  assert_int_equal(scene_emitter_index(&scene, 3), 1);        // among the world's emitters
+  assert_int_equal(scene_emitter_index(&scene, 0), 0);
+  assert_int_equal(scene_emitter_index(&scene, 1), -1);
+  assert_int_equal(scene_emitter_index(&scene, 9), -1);
+  assert_false(scene.events[2].emitter.on);
+  scene_free(&scene);
+}
+
+static void test_defaults_of_bodies_are_the_simulators(void **state) {
+  (void)state;
+  Scene scene =
+      load("{\"version\": 1, \"obstacles\": [{\"type\": \"box\", \"size\": [1, 1, 1], \"position\": [0, 0, 0]}]}");
+  SimObstacleDef should = sim_default_obstacle_def();
+  const SimObstacleDef *is = scene_world_def(&scene).obstacles;
+  assert_int_equal(is->motion, should.motion);
+  assert_true(is->friction == should.friction && is->repeat == should.repeat && is->period == should.period);
+  assert_true(is->start == should.start && is->max_speed == should.max_speed && is->density == should.density);
+  assert_memory_equal(is->stroke, should.stroke, sizeof is->stroke);
+  scene_free(&scene);
+}
+
 static void test_render_settings_and_view_hold_the_scene(void **state) {
   (void)state;
   Scene scene = load(whole);
@@ -121,6 +277,11 @@ static void test_defaults_are_those_of_the_libraries(void **state) {
   assert_true(is.rest_density == should.rest_density && is.support == should.support);
   assert_memory_equal(is.gravity, should.gravity, sizeof is.gravity);
   assert_true(is.time_step == should.time_step && is.cfl == should.cfl && is.iterations == should.iterations);
+  assert_true(is.kinematic_viscosity == should.kinematic_viscosity && is.surface_tension == should.surface_tension);
+  assert_true(is.vorticity == should.vorticity && is.colour_diffusion == should.colour_diffusion);
+  assert_true(is.max_particles == should.max_particles && is.reuse == should.reuse);
+  assert_true(is.container_friction == should.container_friction);
+  assert_true(is.drop_count == 0 && is.emitter_count == 0 && is.sink_count == 0);
   assert_true(is.viscosity == should.viscosity && is.relaxation == should.relaxation && is.tensile == should.tensile);
   assert_memory_equal(&is.container, &should.container, sizeof is.container);
   assert_true(is.seed == should.seed && is.jitter == should.jitter && is.threads == should.threads);
@@ -146,10 +307,25 @@ static void test_names_in_the_table_stand_for_the_right_values(void **state) {
   const struct {
     const char *object, *key, *name;
     int value;
-  } rows[] = {{"simulation", "solver", "pbf", SIM_SOLVER_PBF},
-              {"obstacles", "type", "box", SIM_BOX},
-              {"obstacles", "type", "sphere", SIM_SPHERE},
-              {"obstacles", "type", "cylinder", SIM_CYLINDER},
+  } rows[] = {{"simulation", "solver", "pbf", SOLVER_PBF},
+              {"simulation", "solver", "sph", SOLVER_SPH},
+              {"container", "shape", "box", CONTAINER_BOX},
+              {"container", "shape", "glass", CONTAINER_GLASS},
+              {"fluid", "type", "block", FLUID_BLOCK},
+              {"fluid", "type", "drop", FLUID_DROP},
+              {"fluid", "type", "emitter", FLUID_EMITTER},
+              {"fluid", "shape", "disc", EMITTER_DISC},
+              {"fluid", "shape", "rectangle", EMITTER_RECTANGLE},
+              {"obstacles", "type", "box", OBSTACLE_BOX},
+              {"obstacles", "type", "sphere", OBSTACLE_SPHERE},
+              {"obstacles", "type", "cylinder", OBSTACLE_CYLINDER},
+              {"obstacles", "type", "capsule", OBSTACLE_CAPSULE},
+              {"obstacles", "type", "stairs", OBSTACLE_STAIRS},
+              {"obstacles", "type", "mesh", OBSTACLE_MESH},
+              {"obstacles", "motion", "static", MOTION_STATIC},
+              {"obstacles", "motion", "scripted", MOTION_SCRIPTED},
+              {"obstacles", "motion", "draggable", MOTION_DRAGGABLE},
+              {"obstacles", "motion", "floating", MOTION_FLOATING},
               {"environment", "sky", "clear", RENDER_SKY_CLEAR},
               {"environment", "sky", "gradient", RENDER_SKY_GRADIENT},
               {"environment", "floor", "tiles", RENDER_FLOOR_TILES},
@@ -161,7 +337,9 @@ static void test_names_in_the_table_stand_for_the_right_values(void **state) {
               {"events", "type", "pour", EVENT_POUR},
               {"events", "type", "tilt", EVENT_TILT},
               {"events", "type", "style", EVENT_STYLE},
-              {"events", "type", "camera", EVENT_CAMERA}};
+              {"events", "type", "camera", EVENT_CAMERA},
+              {"events", "type", "drag", EVENT_DRAG},
+              {"events", "type", "emitter", EVENT_EMITTER}};
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
     const SceneField *object = scene_field_find(&scene_top, rows[i].object);
     SceneChoices choices;
@@ -233,7 +411,7 @@ static void test_ranges_are_those_of_the_simulator(void **state) {
     if (takes_number(field, interval.high, INFINITY)) fail_msg("%s: more than the high end taken", field->key);
     checked++;
   }
-  assert_int_equal(checked, 9);
+  assert_int_equal(checked, 14);
 }
 
 /// Both ends of every range of light, environment and render must suit the renderer.
@@ -316,14 +494,89 @@ static void test_keys_are_known_and_stand_once(void **state) {
 
 static void test_what_comes_later_is_refused_by_name(void **state) {
   (void)state;
-  refused("{\"version\": 1, \"simulation\": {\"solver\": \"sph\"}}",
-          "t.json:1: simulation.solver: \"sph\" is not available in this version; available: pbf");
-  refused("{\"version\": 1, \"simulation\": {\"vorticity\": 1}}",
-          "t.json:1: simulation.vorticity: is not available in this version");
-  refused("{\"version\": 1, \"fluid\": [{\"type\": \"emitter\"}]}",
-          "t.json:1: fluid.0.type: \"emitter\" is not available in this version; available: block");
-  refused("{\"version\": 1, \"obstacles\": [{\"type\": \"mesh\"}]}",
-          "t.json:1: obstacles.0.type: \"mesh\" is not available in this version; available: box, sphere, cylinder");
+  refused("{\"version\": 1, \"render\": {\"style\": \"raycast\"}}",
+          "t.json:1: render.style: \"raycast\" is not available in this version; available: points");
+}
+
+#define OBSTACLE(text) "{\"version\": 1, \"obstacles\": [{\"type\": " text ", \"position\": [1, 1, 0.5]}]}"
+#define EMITTER(text)                                                                                                  \
+  "{\"version\": 1, \"fluid\": [{\"type\": \"emitter\", \"direction\": [0, -1, 0], \"position\": [1, 1, 0.5]" text "}" \
+                                                                                                                   "]" \
+                                                                                                                   "}"
+
+static void test_bodies_must_make_sense(void **state) {
+  (void)state;
+  refused(OBSTACLE("\"capsule\", \"radius\": 0.2, \"height\": 0.3"),
+          "t.json:1: obstacles.0: a capsule must be at least as high as two radii, got 0.3 m and 0.2 m");
+  refused(OBSTACLE("\"sphere\", \"radius\": 0.2, \"motion\": \"scripted\""),
+          "t.json:1: obstacles.0: a scripted obstacle needs keys or a stroke");
+  refused(OBSTACLE("\"sphere\", \"radius\": 0.2, \"stroke\": [0, 0, 1]"),
+          "t.json:1: obstacles.0: only a scripted obstacle has keys or a stroke");
+  refused(
+      OBSTACLE(
+          "\"sphere\", \"radius\": 0.2, \"motion\": \"scripted\", \"keys\": [{\"time\": 1, \"position\": [0,0,0]},\n"
+          "{\"position\": [0,0,0],\n\"time\": 1}]"),
+      "t.json:3: obstacles.0.keys.1.time: must be later than the key before it (1 s), got 1");
+  refused(OBSTACLE("\"stairs\", \"size\": [1, 1, 1], \"steps\": 0"),
+          "t.json:1: obstacles.0.steps: must be in [1, 1000], got 0");
+}
+
+static void test_emitters_and_drops_must_make_sense(void **state) {
+  (void)state;
+  refused(EMITTER(""), "t.json:1: fluid.0: a disc needs a diameter");
+  refused(EMITTER(", \"shape\": \"rectangle\", \"diameter\": 1"), "t.json:1: fluid.0: a rectangle needs a size");
+  refused(EMITTER(", \"size\": [1, 2, 3]"), "t.json:1: fluid.0.size: must be a list of two numbers, got 3 items");
+  refused(EMITTER(", \"size\": [1, 0]"), "t.json:1: fluid.0.size.1: must be in (0, 1000] m, got 0");
+  refused(EMITTER(", \"diameter\": 1, \"start\": 2, \"stop\": 2"), "t.json:1: fluid.0: stop must be later than start");
+  refused(EMITTER(", \"diameter\": 1, \"obstacle\": 0"),
+          "t.json:1: fluid.0.obstacle: there is no obstacles.0, the list has 0 items");
+  refused("{\"version\": 1, \"fluid\": [{\"type\": \"drop\", \"centre\": [9, 9, 9], \"radius\": 1}]}",
+          "t.json:1: fluid.0: lies outside the container");
+  refused("{\"version\": 1, \"fluid\": [{\"type\": \"drop\", \"centre\": [1, 1, 0.5], \"radius\": 0.3},\n"
+          "{\"min\": [0, 0, 0], \"max\": [1, 0.75, 0.5]}]}",
+          "t.json:2: fluid.1: overlaps fluid.0");
+  refused("{\"version\": 1, \"fluid\": [{\"type\": \"drop\", \"centre\": [1, 1, 0.5], \"radius\": 0.3},\n"
+          "{\"type\": \"drop\", \"centre\": [1.4, 1, 0.5], \"radius\": 0.3}]}",
+          "t.json:2: fluid.1: overlaps fluid.0");
+  refused("{\"version\": 1, \"sinks\": [{\"min\": [0, 0, 0], \"max\": [0, 1, 1]}]}",
+          "t.json:1: sinks.0: min must be less than max, but in x 0 is not less than 0");
+  // A ball beside the corner of a block does not reach it; nor do balls that touch.
+  Scene scene = load("{\"version\": 1, \"fluid\": [{\"type\": \"drop\", \"centre\": [1.2, 1, 0.7], \"radius\": 0.25},"
+                     "{\"min\": [0, 0, 0], \"max\": [1, 0.8, 0.5]},"
+                     "{\"type\": \"drop\", \"centre\": [1.7, 1, 0.7], \"radius\": 0.25}]}");
+  scene_free(&scene);
+}
+
+#define BALL(name)                                                                                                     \
+  "{\"type\": \"sphere\", \"radius\": 0.1, \"position\": [1, 1, 0.5], \"motion\": \"draggable\", \"name\": \"" name    \
+  "\"}"
+#define DRAG(what) "\"events\": [{\"type\": \"drag\", \"position\": [1, 1, 1], \"obstacle\": " what "}]}"
+
+static void test_names_must_stand_for_something(void **state) {
+  (void)state;
+  refused("{\"version\": 1, \"obstacles\": [" BALL("raft") "],\n" DRAG("\"rafd\""),
+          "t.json:2: events.0.obstacle: no obstacle is called \"rafd\", did you mean \"raft\"?");
+  refused("{\"version\": 1, \"obstacles\": [" BALL("raft") "],\n" DRAG("\"something else\""),
+          "t.json:2: events.0.obstacle: no obstacle is called \"something else\"");
+  refused("{\"version\": 1, \"obstacles\": [" BALL("raft") "],\n" DRAG("1"),
+          "t.json:2: events.0.obstacle: there is no obstacles.1, the list has 1 items");
+  refused("{\"version\": 1, \"obstacles\": [" BALL("a") ",\n" BALL("a") "]}",
+          "t.json:2: obstacles.1.name: is also the name of obstacles.0");
+  const char *const wrong[][2] = {{"-1", "-1"}, {"0.5", "0.5"}, {"\"\"", "\"\""}, {"null", "null"}, {"[]", "a list"}};
+  for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+    char text[400], message[200];
+    snprintf(text, sizeof text, "{\"version\": 1, " DRAG("%s"), wrong[i][0]);
+    snprintf(message, sizeof message,
+             "t.json:1: events.0.obstacle: must be a name or a whole number that is not negative, got %s", wrong[i][1]);
+    refused(text, message);
+  }
+  refused(
+      "{\"version\": 1, \"obstacles\": [{\"type\": \"sphere\", \"radius\": 0.1, \"position\": [1, 1, 0.5]}],\n" DRAG(
+          "0"),
+      "t.json:2: events.0: obstacles.0 is not draggable");
+  refused("{\"version\": 1, \"fluid\": [{\"min\": [0,0,0], \"max\": [1,1,1]}],\n"
+          "\"events\": [{\"type\": \"emitter\", \"emitter\": 0, \"on\": true}]}",
+          "t.json:2: events.0.emitter: fluid.0 is no emitter");
 }
 
 static void test_boxes_must_make_sense(void **state) {
@@ -372,6 +625,12 @@ int main(void) {
       cmocka_unit_test(test_every_type_of_value_arrives),
       cmocka_unit_test(test_events_are_sorted_and_completed),
       cmocka_unit_test(test_world_def_holds_the_scene),
+      cmocka_unit_test(test_world_def_holds_the_method),
+      cmocka_unit_test(test_world_def_holds_water_of_every_kind),
+      cmocka_unit_test(test_emitters_are_turned_to_their_direction),
+      cmocka_unit_test(test_world_def_holds_bodies_and_their_motion),
+      cmocka_unit_test(test_names_find_their_items),
+      cmocka_unit_test(test_defaults_of_bodies_are_the_simulators),
       cmocka_unit_test(test_render_settings_and_view_hold_the_scene),
       cmocka_unit_test(test_defaults_are_those_of_the_libraries),
       cmocka_unit_test(test_names_in_the_table_stand_for_the_right_values),
@@ -383,6 +642,9 @@ int main(void) {
       cmocka_unit_test(test_keys_are_known_and_stand_once),
       cmocka_unit_test(test_what_comes_later_is_refused_by_name),
       cmocka_unit_test(test_boxes_must_make_sense),
+      cmocka_unit_test(test_bodies_must_make_sense),
+      cmocka_unit_test(test_emitters_and_drops_must_make_sense),
+      cmocka_unit_test(test_names_must_stand_for_something),
       cmocka_unit_test(test_syntax_errors_name_line_and_cause),
       cmocka_unit_test(test_byte_order_mark_is_accepted),
   };

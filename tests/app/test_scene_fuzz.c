@@ -4,7 +4,8 @@
 
 enum { ROUNDS = 4000, MOST_TEXT = 32 * 1024 };
 
-static const char *const files[] = {"configs/dam_break.json", "configs/double_dam_break.json",
+static const char *const files[] = {"configs/dam_break.json", "configs/double_dam_break.json", "configs/glass.json",
+                                    "configs/pontoon.json",   "configs/spouts.json",           "configs/steps.json",
                                     "configs/still_pool.json"};
 
 // Pieces that are more likely to hurt than random bytes.
@@ -26,6 +27,12 @@ static const char *const pieces[] = {
     "\"events\":[{\"type\":\"push\"}],",
     "\"type\":\"sphere\",",
     "\"fluid\":[{}],",
+    "\"type\":\"emitter\",",
+    "\"type\":\"mesh\",\"file\":\"x.obj\",",
+    "\"motion\":\"scripted\",",
+    "\"obstacle\":0,",
+    "\"keys\":[{\"time\":1,\"position\":[0,0,0]}],",
+    "\"name\":\"pontoon\",",
     "4294967296",
     "0.5",
     ",",

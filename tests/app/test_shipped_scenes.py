@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""The shipped scenes through the real program: nothing leaves the tank, still water stays still.
+"""The shipped scenes through the real program: nothing leaves the tank or the glass, still water stays still, water runs
+down the steps, spouts fill the pool.
 
 Usage: test_shipped_scenes.py LIDO SOURCE_FOLDER [long]
 The ordinary run uses coarser particles and fewer frames, `long` the scenes as they are.
@@ -7,10 +8,19 @@ The ordinary run uses coarser particles and fewer frames, `long` the scenes as t
 import array
 import glob
 import json
+import math
 import os
 import subprocess
 import sys
 import tempfile
+
+# Scene: particle radius of the ordinary run (m), frames of the ordinary and the long run.
+SCENES = {
+    "dam_break": (0.04, 60, 120), "double_dam_break": (0.04, 60, 120), "still_pool": (0.025, 301, 301),
+    "wave_pool": (0.05, 90, 120), "glass": (0.003, 90, 150), "steps": (0.03, 90, 150), "spouts": (0.025, 90, 150),
+    "pontoon": (0.06, 180, 180), "splash": (0.04, 40, 60),
+}  # fmt: skip
+EXACT = {"wave_pool": 65536, "steps": 40000}  # particles of the scene as it is
 
 MEAN_DENSITY_ERROR = 0.01  # of still_pool after 3 s
 MAX_DENSITY_ERROR = 0.05
@@ -44,9 +54,15 @@ def check_container(name, folder, frames, box):
     files = sorted(glob.glob(f"{folder}/p_*.ply"))
     assert len(files) == frames, f"{name}: {len(files)} files of {frames}"
     for path in files:
-        for axis, values in enumerate(positions(path)):
+        places = positions(path)
+        for axis, values in enumerate(places):
             low, high = min(values), max(values)
             assert box["min"][axis] <= low and high <= box["max"][axis], f"{name}: {path}: axis {axis}: {low} … {high}"
+        if box["shape"] == "glass":
+            middle = [(box["min"][axis] + box["max"][axis]) / 2 for axis in (0, 2)]
+            radius = min(box["max"][axis] - box["min"][axis] for axis in (0, 2)) / 2
+            reach = max(math.hypot(x - middle[0], z - middle[1]) for x, z in zip(places[0], places[2]))
+            assert reach <= radius, f"{name}: {path}: {reach} m from the axis of a glass of {radius} m"
 
 
 def check_still_pool(scene, lines):
@@ -62,16 +78,56 @@ def check_still_pool(scene, lines):
           f"{at_5_s['energy']['kinetic']:.3g} J after 5 s (bound {bound:.3g})")
 
 
+def check_exact(lido, path, name):
+    """Not one particle more or less, and none left out."""
+    with tempfile.TemporaryDirectory() as folder:
+        stats = os.path.join(folder, "stats.jsonl")
+        command = [lido, "simulate", path, "--frames", "1", "--stats", stats, "-o", f"{folder}/p.ply"]
+        said = subprocess.run(command, check=True, capture_output=True, text=True).stderr
+        count = json.loads(open(stats).readline())["particles"]
+    assert count == EXACT[name], f"{name}: {count} particles, not {EXACT[name]}"
+    assert "left out" not in said, f"{name}: {said}"
+
+
+def check_motion(name, folder, lines):
+    """What the scene is there to show."""
+    first, last = lines[0], lines[-1]
+    if name == "spouts":
+        assert last["particles"] > first["particles"], "spouts: nothing was emitted"
+        speeds = max(line["max_speed"] for line in lines)
+        assert speeds < 10, f"spouts: {speeds} m/s"
+    if name == "steps":
+        lowest = min(positions(sorted(glob.glob(f"{folder}/p_*.ply"))[-1])[1])
+        assert lowest < 0.2, f"steps: the water has come down to {lowest} m only"
+
+
+def check_paddles(lido, path, scene, frames, sets, lines):
+    """The paddles put work into the water: with them it moves more than without."""
+    sets = sets + [f"obstacles.{i}.start=100" for i, body in enumerate(scene["obstacles"]) if body["motion"] == "scripted"]
+    with tempfile.TemporaryDirectory() as folder:
+        still = simulate(lido, path, folder, frames, sets)
+    at_rest, moved = (run[-1]["energy"]["kinetic"] for run in (still, lines))
+    print(f"{scene['name']}: {moved:.4g} J, {at_rest:.4g} J without paddles")
+    assert moved > 1.5 * at_rest, f"{scene['name']}: {moved} J with paddles, {at_rest} J without"
+
+
 def main():
     lido, source, full = sys.argv[1], sys.argv[2], sys.argv[3:] == ["long"]
-    for name in ("dam_break", "double_dam_break", "still_pool"):
+    shipped = {os.path.basename(path)[:-5] for path in glob.glob(os.path.join(source, "configs", "*.json"))}
+    assert shipped - {"scene.schema"} == set(SCENES), f"not tested: {shipped - {'scene.schema'} - set(SCENES)}"
+    for name, (radius, frames, long_frames) in SCENES.items():
         path = os.path.join(source, "configs", name + ".json")
-        sets = [] if full else ["simulation.particle_radius=" + ("0.025" if name == "still_pool" else "0.04")]
+        sets = [] if full else [f"simulation.particle_radius={radius}"]
         scene = json.loads(subprocess.check_output([lido, "check", path]))
-        frames = 301 if name == "still_pool" else 120 if full else 60
+        frames = long_frames if full else frames
+        if name in EXACT:
+            check_exact(lido, path, name)
         with tempfile.TemporaryDirectory() as folder:
             lines = simulate(lido, path, folder, frames, sets)
             check_container(name, folder, frames, scene["container"])
+            check_motion(name, folder, lines)
+        if name in ("wave_pool", "pontoon"):
+            check_paddles(lido, path, scene, frames, sets, lines)
             if name == "still_pool":
                 check_still_pool(scene, lines)
 

@@ -241,6 +241,36 @@ static void test_words(void **state) {
   assert_int_equal(size, 0);
 }
 
+// Water where a body stands is left out, and the program says so once, unless it is to be quiet.
+static void test_left_out(void **state) {
+  (void)state;
+  const char *full = in(folder, "full.json");
+  file_put_text(full, SMALL_SCENE ", \"obstacles\": [{\"type\": \"box\", \"size\": [0.08, 0.08, 0.08],"
+                                  " \"position\": [0.12, 0.12, 0.2]}]" SMALL_END);
+  const char *const quiet[] = {"--threads=1", "-q"};
+  for (int q = 0; q < 2; q++) {
+    LidoRun runs[3] = {{0}};
+    LIDO(&runs[0], "simulate", full, "--frames", "2", quiet[q], "-o", in(folder, "p_%05d.vtk"));
+    LIDO(&runs[1], "render", full, "--frames", "1", "--size", "32x32", quiet[q], "-o", in(folder, "f.png"));
+    LIDO(&runs[2], "bench", full, "--frames", "1", "--size", "32x32", quiet[q]);
+    for (int i = 0; i < 3; i++) {
+      check_done(&runs[i]);
+      const char *said = strstr(runs[i].text, "full.json: ");
+      if (q && said) fail_msg("said in spite of -q: %s", runs[i].text);
+      if (q) continue;
+      int count = 0;
+      if (!said || sscanf(said, "full.json: %d particles at the start left out, in an obstacle", &count) != 1)
+        fail_msg("not said: %s", runs[i].text);
+      // 2 x 2 x 2 of the lattice in the box of two spacings, more where centres would be too near its faces.
+      assert_in_range(count, 8, 64);
+      assert_null(strstr(said + 1, "full.json: ")); // once
+    }
+  }
+  LidoRun run = {0};
+  LIDO(&run, "simulate", scene, "--frames", "2", "-o", in(folder, "p_%05d.vtk"));
+  assert_null(strstr(run.text, "left out"));
+}
+
 static void test_terminal(void **state) {
   (void)state;
   if (!lido_has_terminals()) skip();
@@ -275,6 +305,7 @@ int main(int argc, char **argv) {
       cmocka_unit_test_setup_teardown(test_failure, set_up, tear_down),
       cmocka_unit_test_setup_teardown(test_seed, set_up, tear_down),
       cmocka_unit_test_setup_teardown(test_words, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(test_left_out, set_up, tear_down),
       cmocka_unit_test_setup_teardown(test_terminal, set_up, tear_down),
   };
   if (everything) return cmocka_run_group_tests(long_tests, NULL, NULL);

@@ -188,10 +188,10 @@ def read_png(path):
 
 # ---- Cases ------------------------------------------------------------------------------------------------------------
 
-def largest_energy(folder, hand, frames=110):
+def largest_energy(folder, hand, frames=110, scene=POOL):
     """Largest kinetic energy (J) of a settled pool from frame 60 on, while `hand` acts."""
     stats = os.path.join(folder, "stats.jsonl")
-    with Window(folder, "--frames", frames, "--stats", stats) as window:
+    with Window(folder, "--frames", frames, "--stats", stats, scene=scene) as window:
         window.wait_frame(60)
         hand(window)
         window.ends_with(0)
@@ -234,6 +234,26 @@ def case_water_answers(folder):
         moved = largest_energy(folder, hand)
         print(f"  {name}: {moved:.4g} J against {calm:.4g} J")
         assert moved > 8 * calm, f"{name}: the water did not answer: {moved} J against {calm} J"
+
+
+def case_body_answers(folder):
+    """A left drag on a draggable body moves it, and it moves the water; on one that stands it looks around."""
+    energies = []
+    for motion in ["static", "draggable"]:
+        ball = {"type": "sphere", "radius": 0.12, "position": [0.6, 0.2, 0.3], "motion": motion}
+        scene = dict(POOL, obstacles=[ball], camera={"eye": [0.6, 0.2, 2], "target": [0.6, 0.2, 0.3]})
+
+        def drag(window):
+            end = window.frame() + 12
+            xdotool("mousemove", "--window", window.id, 240, 160, "mousedown", 1)
+            while window.frame() < end:
+                for x in [280, 320, 280, 240, 200, 160, 200, 240]:
+                    xdotool("mousemove", "--window", window.id, x, 160)
+                    time.sleep(0.05)
+            xdotool("mouseup", 1)
+        energies.append(largest_energy(folder, drag, scene=scene))
+    print(f"  dragged: {energies[1]:.4g} J against {energies[0]:.4g} J")
+    assert energies[1] > 8 * energies[0], "the water did not answer to the body"
 
 
 def case_pause_step_reset(folder):

@@ -70,6 +70,42 @@ static void the_button_that_began_a_drag_ends_it(void **state) {
   assert_int_equal(input.drag, WINDOW_DRAG_NONE);
 }
 
+static void a_left_drag_on_a_draggable_body_moves_it(void **state) {
+  (void)state;
+  const SimObstacle body = {.shape = SIM_SPHERE, .size = {0.5f}, .rotation = {0, 0, 0, 1}};
+  SimObstacleDef def = sim_default_obstacle_def();
+  for (int draggable = 0; draggable < 2; draggable++) {
+    def.motion = draggable ? SIM_DRAGGABLE : SIM_STATIC;
+    WindowInput input = fresh(), before = input;
+    input.bodies = (GrabBodies){1, &body, &def};
+    window_input_cursor(&input, 400, 300); // its middle
+    window_input_button(&input, GLFW_MOUSE_BUTTON_LEFT, 0, true);
+    window_input_cursor(&input, 500, 300);
+    assert_int_equal(input.drag, draggable ? WINDOW_DRAG_BODY : WINDOW_DRAG_ORBIT);
+    assert_int_equal(same_camera(&input, &before), draggable);
+    window_input_button(&input, GLFW_MOUSE_BUTTON_LEFT, 0, false);
+    assert_int_equal(input.drag, WINDOW_DRAG_NONE);
+    assert_int_equal(input.grab.moved, draggable); // still to be taken
+    assert_false(input.grab.holds);
+    if (draggable) assert_true(input.grab.target[0] > 0.1f);
+  }
+  // Beside it, and with Ctrl or Shift, the left button does what it always does.
+  def.motion = SIM_DRAGGABLE;
+  const struct {
+    float x;
+    int mods;
+    WindowDrag drag;
+  } rows[] = {
+      {10, 0, WINDOW_DRAG_ORBIT}, {400, GLFW_MOD_CONTROL, WINDOW_DRAG_WATER}, {400, GLFW_MOD_SHIFT, WINDOW_DRAG_PAN}};
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    WindowInput input = fresh();
+    input.bodies = (GrabBodies){1, &body, &def};
+    window_input_cursor(&input, rows[i].x, 300);
+    window_input_button(&input, GLFW_MOUSE_BUTTON_LEFT, rows[i].mods, true);
+    assert_int_equal(input.drag, rows[i].drag);
+  }
+}
+
 static void the_wheel_zooms(void **state) {
   (void)state;
   WindowInput input = fresh();
@@ -204,6 +240,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(each_drag_moves_what_it_says),
       cmocka_unit_test(the_button_that_began_a_drag_ends_it),
+      cmocka_unit_test(a_left_drag_on_a_draggable_body_moves_it),
       cmocka_unit_test(the_wheel_zooms),
       cmocka_unit_test(keys_do_what_the_help_says),
       cmocka_unit_test(nonsense_positions_are_passed_over),

@@ -4,7 +4,7 @@
     app    -> sim/sim.h, sim/frame.h, render/render.h, and its own headers
     render -> sim/frame.h, and its own headers
     sim    -> its own headers, libm, OpenMP, ODE and POSIX threads in rigid
-    cJSON, GLFW, EGL, OSMesa, spng: app only; libepoxy: render and app/context_*
+    cJSON, GLFW, EGL, OSMesa, spng, Assimp: app only; libepoxy: render and app/context_*
 
 Usage: check_layers.py ROOT    exits 1 and prints each breach as file:line: reason.
        check_layers.py --self-test    feeds it breaches and checks that each is found.
@@ -26,7 +26,7 @@ LAYERS = {
     "sim": {"own": ("sim/",), "project": (), "system": (r"omp\.h", r"[ei]mmintrin\.h", r"ode/.*", r"pthread\.h")},
     "render": {"own": ("render/",), "project": ("sim/frame.h",), "system": (r"epoxy/gl\.h", r"cglm/.*")},
     "app": {"own": ("app/",), "project": ("sim/sim.h", "sim/frame.h", "render/render.h"),
-            "system": (r"cjson/.*", r"GLFW/.*", r"EGL/.*", r"GL/osmesa\.h", r"spng\.h", r"sys/.*", r"unistd\.h",
+            "system": (r"cjson/.*", r"GLFW/.*", r"EGL/.*", r"GL/osmesa\.h", r"spng\.h", r"assimp/.*", r"sys/.*", r"unistd\.h",
                        r"fcntl\.h", r"signal\.h", r"spawn\.h", r"pthread\.h", r"getopt\.h", r"dirent\.h", r"poll\.h",
                        r"strings\.h", r"termios\.h", r"libgen\.h", r"dlfcn\.h", r"mach-o/.*")},
 }
@@ -36,6 +36,7 @@ ONLY_IN = [  # (system header, files that may include it)
     (r"GL/osmesa\.h", r"app/context_osmesa\."),
     (r"GLFW/.*", r"app/context_glfw\.|app/window\.|app/window_"),
     (r"cjson/.*", r"app/"),
+    (r"assimp/.*", r"app/mesh_import\."),
     (r"omp\.h", r"sim/parallel\."),
     (r"[ei]mmintrin\.h", r"sim/wide/simd\.h"),
     (r"ode/.*", r"sim/rigid\."),

@@ -57,9 +57,14 @@ def made_cases():
     yield "name: must have at most 127 bytes, got 128", b'{"version": 1, "name": "' + b"a" * 128 + b'"}'
     yield "fluid: must have at most 4096 items, got 5000", f'{{"version": 1, "fluid": [{",".join([block] * 5000)}]}}'.encode()
     yield "obstacles: must have at most 1024 items, got 2000", b'{"version": 1, "obstacles": [' + b",".join([b"{}"] * 2000) + b"]}"
+    keys = ",".join('{"time":%d,"position":[0,0,0]}' % i for i in range(5000))
+    body = '{"type":"box","size":[1,1,1],"position":[0,0,0],"motion":"scripted","keys":['
+    yield "obstacles.0.keys: must have at most 4096 items, got 5000", f'{{"version": 1, "obstacles": [{body}{keys}]}}]}}'.encode()
+    yield "sinks: must have at most 1024 items, got 2000", b'{"version": 1, "sinks": [' + b",".join([b"{}"] * 2000) + b"]}"
+    yield "obstacles.0.file: must have at most 127 bytes", b'{"version": 1, "obstacles": [{"type": "mesh", "position": [0,0,0], "file": "' + b"a" * 200 + b'"}]}'
     yield "k0: unknown key", b'{"version": 1, ' + b",".join(b'"k%d": 0' % i for i in range(100000)) + b"}"
     yield ":1001: fluid: must be a list of objects, got 1", b'{"version": 1' + b"\n" * 1000 + b', "fluid": 1}'
-    yield 'solver: must be "pbf", got "' + "x" * 40 + '..."', b'{"version": 1, "simulation": {"solver": "' + b"x" * 100000 + b'"}}'
+    yield 'solver: must be one of pbf, sph, got "' + "x" * 40 + '..."', b'{"version": 1, "simulation": {"solver": "' + b"x" * 100000 + b'"}}'
     yield "a" * 40 + "...: unknown key", b'{"version": 1, "' + b"a" * 100000 + b'": 1}'
     text = (SOURCES / "configs" / "dam_break.json").read_bytes()
     end = text.rindex(b"}")
