@@ -125,6 +125,10 @@ static void predict_kernel(int32_t begin, int32_t end, const void *context) {
       v[k] = now->next_velocity[k][i];
     }
     int32_t clamped = sim_boundary_clamp(step->boundary, &near, from, to);
+    if (clamped < 0 && to[0] == free[0] && to[1] == free[1] && to[2] == free[2]) {
+      if (step->reaction) sim_reaction_none(step->reaction, i, i + 1);
+      continue;
+    }
     float share = sim_step_clamp_share(step, v, free, to);
     if (step->reaction) sim_reaction_predicted(step->reaction, i, clamped, share, free, to);
     for (int k = 0; k < 3; k++) {

@@ -95,9 +95,10 @@ static void clamp_to_bodies(const SimStep *step, int32_t i, SimF answer, SimF to
     for (int a = 0; a < 3; a++) {
       from[a] = p->now.position[a][i + k];
       free[a] = at[a] = place[a][k];
-      v[a] = p->now.next_velocity[a][i + k] + gained[a][k] * step->inverse_dt;
     }
     int32_t clamped = sim_boundary_clamp(step->boundary, near, from, at);
+    if (!step->reaction && at[0] == free[0] && at[1] == free[1] && at[2] == free[2]) continue;
+    for (int a = 0; a < 3; a++) v[a] = p->now.next_velocity[a][i + k] + gained[a][k] * step->inverse_dt;
     float share = sim_step_clamp_share(step, v, free, at);
     if (step->reaction) sim_reaction_corrected(step->reaction, i + k, answers[k], clamped, share, free, at);
     for (int a = 0; a < 3; a++) {
