@@ -35,6 +35,7 @@ bool sim_particles_reserve(SimParticles *particles, int32_t capacity) {
     if (!sim_reserve(&particles->spare[k], n, sizeof(float))) return false;
   if (!sim_reserve((void **)&particles->first, 4 * n, sizeof(float)) ||
       !sim_reserve((void **)&particles->second, 4 * n, sizeof(float)) ||
+      (particles->with_work && !sim_reserve((void **)&particles->work, 4 * n, sizeof(float))) ||
       !sim_reserve_keep((void **)&particles->density, n, sizeof(float)) ||
       !sim_reserve((void **)&particles->solid, 4 * n, sizeof(float)) ||
       !sim_reserve((void **)&particles->near, n / SIM_CHUNK, 1))
@@ -50,6 +51,7 @@ void sim_particles_free(SimParticles *particles) {
   for (int k = 0; k < SIM_SPARES; k++) sim_release(particles->spare[k]);
   sim_release(particles->first);
   sim_release(particles->second);
+  sim_release(particles->work);
   sim_release(particles->density);
   sim_release(particles->solid);
   sim_release(particles->near);

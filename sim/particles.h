@@ -34,6 +34,8 @@ typedef struct SimParticles {
   void *spare[SIM_SPARES]; ///< (count) words each: the sort moves arrays into them and swaps them
   // Work arrays in the present order.
   float *first, *second;   ///< (count, 4): x, y, z of the predicted position, m, and a number that the stages name
+  float *work;             ///< (count, 4), where `with_work`: another one that the stages name
+  bool with_work;
   float *density;          ///< share of the rest density in a settled state; pbf keeps inherited compression here meanwhile
   float *solid;            ///< (count, 4): gradient of the walls' share of the density, 1/m, and the share itself
   uint8_t *near;           ///< (chunks): SIM_NEAR_… of each chunk

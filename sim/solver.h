@@ -33,6 +33,10 @@ typedef struct SimStep {
   float wall_answer;          ///< κ, how much of a particle's pressure a wall answers with
   float warm;                 ///< s², turns `pressure` into the first λ
   bool stabilise;             ///< the corrections of this iteration move particles without changing their velocity
+  // Smoothed particle hydrodynamics
+  float stiffness;            ///< m²/s², c²
+  float bulk;                 ///< m²/s, bulk viscosity
+  float wall_pressure;
   bool measure;               ///< only measure the present state: nothing is corrected
 } SimStep;
 

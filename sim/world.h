@@ -21,6 +21,7 @@ struct SimWorld {
   int32_t threads;
   const SimWide *wide;
   const SimMethod *method;
+  double sound;                ///< m/s, speed of sound of sph in the last substep; 0: none yet
   double last_dt;              ///< s, of the last substep; 0: none yet
 
   SimCubic cubic;

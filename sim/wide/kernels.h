@@ -11,6 +11,8 @@ void WIDE(sim_pbf_inherit)(int32_t begin, int32_t end, const void *context);
 void WIDE(sim_pbf_prepare)(int32_t begin, int32_t end, const void *context);
 void WIDE(sim_pbf_density)(int32_t begin, int32_t end, const void *context);
 void WIDE(sim_pbf_correct)(int32_t begin, int32_t end, const void *context, double *partial);
+void WIDE(sim_sph_density)(int32_t begin, int32_t end, const void *context);
+void WIDE(sim_sph_force)(int32_t begin, int32_t end, const void *context);
 void WIDE(sim_viscosity)(int32_t begin, int32_t end, const void *context);
 
 #endif

@@ -9,5 +9,7 @@ const SimWide WIDE(sim_wide) = {
     .pbf_prepare = WIDE(sim_pbf_prepare),
     .pbf_density = WIDE(sim_pbf_density),
     .pbf_correct = WIDE(sim_pbf_correct),
+    .sph_density = WIDE(sim_sph_density),
+    .sph_force = WIDE(sim_sph_force),
     .viscosity = WIDE(sim_viscosity),
 };

@@ -17,6 +17,7 @@ typedef struct SimWide {
   // The kernels of the solvers: SimStep, see solver.h.
   SimKernel *pbf_inherit, *pbf_prepare, *pbf_density;
   SimReduceKernel *pbf_correct;
+  SimKernel *sph_density, *sph_force;
   SimKernel *viscosity;
 } SimWide;
 

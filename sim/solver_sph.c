@@ -1,0 +1,108 @@
+// Smoothed particle hydrodynamics: see solver_sph.h; the sweeps are in wide/sph.c.
+#include "sim/solver_sph.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "sim/parallel.h"
+#include "sim/world.h"
+
+// The speed of sound: c² is this many times the head, so the density error is at most about its inverse.
+#define STIFFNESS 100.0
+// Spacings that sound may travel in a substep.
+#define COURANT 0.6
+// Bulk viscosity in units of speed of sound times spacing.
+#define BULK 0.5f
+// How much the speed of sound may change in one substep.
+#define RISE 1.01
+#define FALL 0.998
+
+// ---- Speed of sound --------------------------------------------------------------------------------------------------
+
+enum { HIGHEST, HEAD, HEADS };
+
+// Potential, negative, and total head of the particles, m²/s².
+static void head_kernel(int32_t begin, int32_t end, const void *context, double *most) {
+  const SimWorld *world = context;
+  const SimSorted *now = &world->particles.now;
+  for (int32_t i = begin; i < end; i++) {
+    double height = 0, v2 = 0;
+    for (int k = 0; k < 3; k++) {
+      height += (double)world->gravity[k] * (double)now->position[k][i];
+      v2 += (double)now->velocity[k][i] * (double)now->velocity[k][i];
+    }
+    if (height > most[HIGHEST]) most[HIGHEST] = height;
+    if (0.5 * v2 - height > most[HEAD]) most[HEAD] = 0.5 * v2 - height;
+  }
+}
+
+static double sound_wanted(const SimWorld *world) {
+  double most[HEADS] = {-INFINITY, -INFINITY}, head, floor = (double)world->cubic.spacing * 30;
+  sim_parallel_max(world->threads, world->particles.count, HEADS, head_kernel, world, most);
+  head = most[HIGHEST] + most[HEAD];
+  for (int32_t k = 0; k < world->push_count; k++) {
+    const float *a = world->pushes[k].acceleration;
+    head += (double)sqrtf(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]) * (double)world->pushes[k].radius;
+  }
+  if (!(head < INFINITY)) head = 0;
+  return fmax(sqrt(STIFFNESS * fmax(head, 0)), floor);
+}
+
+static double sound_now(const SimWorld *world) {
+  double wanted = sound_wanted(world);
+  if (!(world->sound > 0)) return wanted;
+  return fmin(fmax(wanted, FALL * world->sound), RISE * world->sound);
+}
+
+// ---- The substep -----------------------------------------------------------------------------------------------------
+
+static void velocity_to_work_kernel(int32_t begin, int32_t end, const void *context) {
+  const SimParticles *p = context;
+  for (int32_t i = begin; i < end; i++)
+    for (int k = 0; k < 4; k++) p->work[4 * (size_t)i + k] = k < 3 ? p->now.next_velocity[k][i] : 0;
+}
+
+static bool substep(SimWorld *world, float dt, SimError *error) {
+  double since = sim_milliseconds();
+  world->sound = sound_now(world);
+  SimStep step = sim_step_make(world, dt);
+  step.stiffness = (float)(world->sound * world->sound);
+  step.bulk = BULK * (float)world->sound * world->cubic.spacing;
+  step.wall_pressure = 2;
+  const char *env;
+  if ((env = getenv("X_BULK"))) step.bulk *= (float)atof(env) / BULK;
+  if ((env = getenv("X_WALL"))) step.wall_pressure = (float)atof(env);
+
+  sim_step_predict(&step);
+  if (!sim_step_check(world, SIM_STAGE_predict, error)) return false;
+  sim_step_lap(world, SIM_STAGE_predict, &since);
+
+  if (!sim_step_neighbours(world, SIM_STAGE_sort, SIM_STAGE_neighbours, &since, error)) return false;
+  world->profile.neighbour_pairs += world->neighbours.pairs;
+
+  SimParticles *p = step.particles;
+  sim_parallel_for(step.threads, p->count, velocity_to_work_kernel, p);
+  sim_particles_pad(p, p->work);
+  sim_parallel_for(step.threads, p->count, step.wide->sph_density, &step);
+  sim_particles_pad(p, p->second);
+  sim_step_lap(world, SIM_STAGE_density, &since);
+  sim_parallel_for(step.threads, p->count, step.wide->sph_force, &step);
+  sim_step_lap(world, SIM_STAGE_correct, &since);
+  if (!sim_step_check(world, SIM_STAGE_velocity, error)) return false;
+  sim_step_lap(world, SIM_STAGE_velocity, &since);
+
+  sim_step_viscosity(&step);
+  sim_step_lap(world, SIM_STAGE_viscosity, &since);
+
+  sim_step_commit(world, dt);
+  return true;
+}
+
+static double longest(const SimWorld *world) {
+  double courant = COURANT;
+  const char *env;
+  if ((env = getenv("X_COURANT"))) courant = atof(env);
+  return courant * (double)world->cubic.spacing / sound_now(world);
+}
+
+const SimMethod sim_method_sph = {.name = "sph", .substep = substep, .longest = longest};
