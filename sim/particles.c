@@ -91,6 +91,11 @@ void sim_particles_pad(const SimParticles *particles, float *four) {
     for (int k = 0; k < 4; k++) four[4 * i + k] = k < 3 ? SIM_FAR : 0;
 }
 
+void sim_particles_pad_zero(const SimParticles *particles, float *four) {
+  size_t n = (size_t)particles->count;
+  memset(four + 4 * n, 0, 4 * (padded(particles->count) - n) * sizeof(float));
+}
+
 // ---- Sort ------------------------------------------------------------------------------------------------------------
 
 typedef struct MoveContext {

@@ -73,5 +73,7 @@ bool sim_particles_sort(SimParticles *particles, SimCellSort *sort, float cell_s
 
 /// Put the particles infinitely far away behind the last one of `first` or `second`.
 void sim_particles_pad(const SimParticles *particles, float *four);
+/// Put zeros there: velocities, normals.
+void sim_particles_pad_zero(const SimParticles *particles, float *four);
 
 #endif

@@ -257,7 +257,7 @@ void sim_frame_buffer_destroy(SimFrameBuffer *buffer); ///< NULL is allowed
 
 /// Stages of a step and of a frame, in the order in which they run.
 #define SIM_STAGES(X) \
-  X(predict) X(sort) X(neighbours) X(warm_start) X(density) X(correct) X(velocity) X(viscosity) \
+  X(predict) X(sort) X(neighbours) X(tension) X(warm_start) X(density) X(correct) X(velocity) X(vorticity) X(viscosity) X(mix) \
   X(frame) X(classify) X(anisotropy) X(flags) X(height_field)
 typedef enum SimStage {
 #define SIM_STAGE_ENUM(name) SIM_STAGE_##name,

@@ -10,6 +10,14 @@
 #include "sim/sim.h"
 #include "sim/wall_table.h"
 
+/// One stage of a diffusion (diffusion.c): of the values in `second`, y → keep y + before · (what stands in `value`) +
+/// gain Σ_j (share V W + spread V |dW/dr| r/(r² + soft h²)/moment) (y_j − y), into `value`.
+typedef struct SimDiffusion {
+  float share, spread; ///< –, m²
+  float keep, before, gain;
+  float *value[3];
+} SimDiffusion;
+
 /// What travels through one substep.
 typedef struct SimStep {
   const SimWide *wide;
@@ -23,9 +31,13 @@ typedef struct SimStep {
   const SimWallTable *wall;
   SimParticles *particles;
   SimNeighbours *neighbours;
-  // Viscosity: v_i += Σ_j (share W_ij + diffusion |∇W_ij|/r) (v_j − v_i)
-  float viscosity_share;      ///< XSPH's c
-  float viscosity_diffusion;  ///< m², 2 ν dt
+  float viscosity_share;      ///< XSPH's c of this substep
+  float viscosity;            ///< m²/s, ν
+  float colour_diffusion;     ///< m²/s
+  float confinement;          ///< ε of vorticity confinement
+  const float *place;         ///< (count, 4), the positions that surface tension reads
+  float cohesion, curvature;  ///< m/s², of surface tension
+  SimDiffusion diffusion;
   // Position based fluids
   float omega;                ///< ω, damping of the Jacobi iteration
   float relaxation;           ///< 1/m², ε
@@ -63,8 +75,15 @@ SimStep sim_step_make(SimWorld *world, float dt);
 void sim_step_predict(const SimStep *step);
 /// Sort by `second` as axes, build the lists, note which chunks are near what. Timed as the two stages.
 bool sim_step_neighbours(SimWorld *world, SimStage sort_stage, SimStage list_stage, double *since, SimError *error);
-/// XSPH and the viscosity of the liquid; reads the positions in `first`, changes next_velocity.
+/// Vorticity confinement (vorticity.c), XSPH and the viscosity of the liquid (diffusion.c), friction at walls
+/// (friction.c): positions in `first`, next_velocity changes. Each does nothing where the Def asks for none.
+void sim_step_vorticity(const SimStep *step);
 void sim_step_viscosity(const SimStep *step);
+void sim_step_friction(const SimStep *step);
+/// Colours of neighbours mix (diffusion.c).
+void sim_step_mix(const SimStep *step);
+/// Vorticity, viscosity, friction and mixing with the time they take.
+void sim_step_finish(SimWorld *world, const SimStep *step, double *since);
 /// Whether next_velocity can be followed; otherwise *error names stage and particle.
 bool sim_step_check(SimWorld *world, SimStage stage, SimError *error);
 /// The positions in `first` and next_velocity become the state.

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "sim/parallel.h"
+#include "sim/tension.h"
 #include "sim/world.h"
 
 // The speed of sound: c² is this many times the head, so the density error is at most about its inverse.
@@ -45,6 +46,7 @@ static double sound_wanted(const SimWorld *world) {
     head += (double)sqrtf(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]) * (double)world->pushes[k].radius;
   }
   if (!(head < INFINITY)) head = 0;
+  head += 0.25 * (double)world->def.surface_tension / ((double)world->def.rest_density * (double)world->cubic.spacing);
   return fmax(sqrt(STIFFNESS * fmax(head, 0)), floor);
 }
 
@@ -68,7 +70,7 @@ static bool substep(SimWorld *world, float dt, SimError *error) {
   SimStep step = sim_step_make(world, dt);
   step.stiffness = (float)(world->sound * world->sound);
   step.bulk = BULK * (float)world->sound * world->cubic.spacing;
-  step.wall_pressure = 2;
+  step.wall_pressure = 1;
   const char *env;
   if ((env = getenv("X_BULK"))) step.bulk *= (float)atof(env) / BULK;
   if ((env = getenv("X_WALL"))) step.wall_pressure = (float)atof(env);
@@ -81,8 +83,11 @@ static bool substep(SimWorld *world, float dt, SimError *error) {
   world->profile.neighbour_pairs += world->neighbours.pairs;
 
   SimParticles *p = step.particles;
+  sim_step_tension(&step, &world->def, p->first);
+  sim_step_lap(world, SIM_STAGE_tension, &since);
+
   sim_parallel_for(step.threads, p->count, velocity_to_work_kernel, p);
-  sim_particles_pad(p, p->work);
+  sim_particles_pad_zero(p, p->work);
   sim_parallel_for(step.threads, p->count, step.wide->sph_density, &step);
   sim_particles_pad(p, p->second);
   sim_step_lap(world, SIM_STAGE_density, &since);
@@ -91,9 +96,7 @@ static bool substep(SimWorld *world, float dt, SimError *error) {
   if (!sim_step_check(world, SIM_STAGE_velocity, error)) return false;
   sim_step_lap(world, SIM_STAGE_velocity, &since);
 
-  sim_step_viscosity(&step);
-  sim_step_lap(world, SIM_STAGE_viscosity, &since);
-
+  sim_step_finish(world, &step, &since);
   sim_step_commit(world, dt);
   return true;
 }
@@ -102,7 +105,7 @@ static double longest(const SimWorld *world) {
   double courant = COURANT;
   const char *env;
   if ((env = getenv("X_COURANT"))) courant = atof(env);
-  return courant * (double)world->cubic.spacing / sound_now(world);
+  return fmin(courant * (double)world->cubic.spacing / sound_now(world), sim_tension_longest(world));
 }
 
 const SimMethod sim_method_sph = {.name = "sph", .substep = substep, .longest = longest};

@@ -11,6 +11,14 @@ void sim_step_lap(SimWorld *world, SimStage stage, double *since) {
   *since = now;
 }
 
+// XSPH's c stands for a time of 0.1 √(d/g): see diffusion.c.
+static float viscosity_share(const SimWorld *world, float dt) {
+  const float *g = world->gravity;
+  float pull = sqrtf(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
+  float steps = pull > 0 ? 10 * dt * sqrtf(pull / world->cubic.spacing) : 1;
+  return world->def.viscosity * fminf(steps, 1);
+}
+
 SimStep sim_step_make(SimWorld *world, float dt) {
   SimStep step = {.wide = world->wide,
                   .threads = world->threads,
@@ -23,8 +31,10 @@ SimStep sim_step_make(SimWorld *world, float dt) {
                   .wall = &world->wall,
                   .particles = &world->particles,
                   .neighbours = &world->neighbours,
-                  .viscosity_share = world->def.viscosity,
-                  .viscosity_diffusion = 2 * world->def.kinematic_viscosity * dt};
+                  .viscosity_share = viscosity_share(world, dt),
+                  .viscosity = world->def.kinematic_viscosity,
+                  .colour_diffusion = world->def.colour_diffusion,
+                  .confinement = world->def.vorticity};
   memcpy(step.gravity, world->gravity, sizeof step.gravity);
   return step;
 }
@@ -160,20 +170,16 @@ bool sim_step_neighbours(SimWorld *world, SimStage sort_stage, SimStage list_sta
   return true;
 }
 
-// ---- Viscosity -------------------------------------------------------------------------------------------------------
+// ---- After the pressure -----------------------------------------------------------------------------------------------
 
-static void velocity_to_second_kernel(int32_t begin, int32_t end, const void *context) {
-  const SimParticles *p = context;
-  for (int32_t i = begin; i < end; i++)
-    for (int k = 0; k < 4; k++) p->second[4 * (size_t)i + k] = k < 3 ? p->now.next_velocity[k][i] : 0;
-}
-
-void sim_step_viscosity(const SimStep *step) {
-  SimParticles *p = step->particles;
-  if (!(step->viscosity_share > 0 || step->viscosity_diffusion > 0)) return;
-  sim_parallel_for(step->threads, p->count, velocity_to_second_kernel, p);
-  sim_particles_pad(p, p->second);
-  sim_parallel_for(step->threads, p->count, step->wide->viscosity, step);
+void sim_step_finish(SimWorld *world, const SimStep *step, double *since) {
+  sim_step_vorticity(step);
+  sim_step_lap(world, SIM_STAGE_vorticity, since);
+  sim_step_viscosity(step);
+  sim_step_friction(step);
+  sim_step_lap(world, SIM_STAGE_viscosity, since);
+  sim_step_mix(step);
+  sim_step_lap(world, SIM_STAGE_mix, since);
 }
 
 // ---- Check and commit ------------------------------------------------------------------------------------------------

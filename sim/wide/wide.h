@@ -18,7 +18,7 @@ typedef struct SimWide {
   SimKernel *pbf_inherit, *pbf_prepare, *pbf_density;
   SimReduceKernel *pbf_correct;
   SimKernel *sph_density, *sph_force;
-  SimKernel *viscosity;
+  SimKernel *diffuse, *tension_normal, *tension_force, *vorticity_curl, *vorticity_confine;
 } SimWide;
 
 /// The widest one that this processor has; always the same. `sim_wide_named` finds another one that works here (NULL:
