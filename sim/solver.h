@@ -48,7 +48,6 @@ typedef struct SimStep {
   // Smoothed particle hydrodynamics
   float stiffness;            ///< m²/s², c²
   float bulk;                 ///< m²/s, bulk viscosity
-  float wall_pressure;
   bool measure;               ///< only measure the present state: nothing is corrected
 } SimStep;
 

@@ -2,7 +2,6 @@
 #include "sim/solver_sph.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 #include "sim/parallel.h"
 #include "sim/tension.h"
@@ -11,9 +10,11 @@
 // The speed of sound: c² is this many times the head, so the density error is at most about its inverse.
 #define STIFFNESS 100.0
 // Spacings that sound may travel in a substep.
-#define COURANT 0.6
+#define COURANT 0.4
 // Bulk viscosity in units of speed of sound times spacing.
 #define BULK 0.5f
+// α of the artificial viscosity.
+#define ARTIFICIAL 0.02f
 // How much the speed of sound may change in one substep.
 #define RISE 1.01
 #define FALL 0.998
@@ -38,7 +39,7 @@ static void head_kernel(int32_t begin, int32_t end, const void *context, double 
 }
 
 static double sound_wanted(const SimWorld *world) {
-  double most[HEADS] = {-INFINITY, -INFINITY}, head, floor = (double)world->cubic.spacing * 30;
+  double most[HEADS] = {-INFINITY, -INFINITY}, head, spacing = (double)world->cubic.spacing;
   sim_parallel_max(world->threads, world->particles.count, HEADS, head_kernel, world, most);
   head = most[HIGHEST] + most[HEAD];
   for (int32_t k = 0; k < world->push_count; k++) {
@@ -46,8 +47,10 @@ static double sound_wanted(const SimWorld *world) {
     head += (double)sqrtf(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]) * (double)world->pushes[k].radius;
   }
   if (!(head < INFINITY)) head = 0;
-  head += 0.25 * (double)world->def.surface_tension / ((double)world->def.rest_density * (double)world->cubic.spacing);
-  return fmax(sqrt(STIFFNESS * fmax(head, 0)), floor);
+  // Cohesion presses water together about as much as a drop of two spacings is by its surface.
+  head += (double)world->def.surface_tension / ((double)world->def.rest_density * spacing);
+  // Where nothing moves and nothing pulls, any speed will do.
+  return fmax(sqrt(STIFFNESS * fmax(head, 0)), 10 * spacing);
 }
 
 static double sound_now(const SimWorld *world) {
@@ -69,11 +72,9 @@ static bool substep(SimWorld *world, float dt, SimError *error) {
   world->sound = sound_now(world);
   SimStep step = sim_step_make(world, dt);
   step.stiffness = (float)(world->sound * world->sound);
-  step.bulk = BULK * (float)world->sound * world->cubic.spacing;
-  step.wall_pressure = 1;
-  const char *env;
-  if ((env = getenv("X_BULK"))) step.bulk *= (float)atof(env) / BULK;
-  if ((env = getenv("X_WALL"))) step.wall_pressure = (float)atof(env);
+  float spread = (float)world->sound * world->cubic.spacing;
+  step.bulk = BULK * spread;
+  step.viscosity += ARTIFICIAL / 10 * spread;
 
   sim_step_predict(&step);
   if (!sim_step_check(world, SIM_STAGE_predict, error)) return false;
@@ -102,10 +103,7 @@ static bool substep(SimWorld *world, float dt, SimError *error) {
 }
 
 static double longest(const SimWorld *world) {
-  double courant = COURANT;
-  const char *env;
-  if ((env = getenv("X_COURANT"))) courant = atof(env);
-  return fmin(courant * (double)world->cubic.spacing / sound_now(world), sim_tension_longest(world));
+  return fmin(COURANT * (double)world->cubic.spacing / sound_now(world), sim_tension_longest(world));
 }
 
 const SimMethod sim_method_sph = {.name = "sph", .substep = substep, .longest = longest};
