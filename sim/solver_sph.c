@@ -18,6 +18,8 @@
 // How much the speed of sound may change in one substep.
 #define RISE 1.01
 #define FALL 0.998
+// What it must be at least, as a share of what is wanted: when gravity or a push sets in, when water is poured.
+#define LEAST 0.5
 
 // ---- Speed of sound --------------------------------------------------------------------------------------------------
 
@@ -56,7 +58,7 @@ static double sound_wanted(const SimWorld *world) {
 static double sound_now(const SimWorld *world) {
   double wanted = sound_wanted(world);
   if (!(world->sound > 0)) return wanted;
-  return fmin(fmax(wanted, FALL * world->sound), RISE * world->sound);
+  return fmax(fmin(fmax(wanted, FALL * world->sound), RISE * world->sound), LEAST * wanted);
 }
 
 // ---- The substep -----------------------------------------------------------------------------------------------------
