@@ -72,6 +72,7 @@ void sim_particles_add(SimParticles *particles, uint32_t id, const float positio
                        const float colour[3]) {
   assert(particles->count < particles->capacity);
   int32_t i = particles->count++;
+  particles->shuffled = true;
   for (int k = 0; k < 3; k++) {
     particles->now.position[k][i] = position[k];
     particles->now.velocity[k][i] = particles->now.next_velocity[k][i] = velocity[k];
@@ -124,6 +125,7 @@ bool sim_particles_sort(SimParticles *particles, SimCellSort *sort, float cell_s
   sim_particles_second_as_axes(particles, context.axes);
   if (!sim_grid_sort(sort, context.axes, particles->count, cell_size, threads)) return false;
   context.order = sort->order;
+  particles->shuffled = false;
   sim_parallel_for(threads, particles->count, to_first_kernel, &context);
   sim_particles_pad(particles, particles->first);
   sim_parallel_for(threads, particles->count, to_axes_kernel, &context);

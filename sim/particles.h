@@ -29,6 +29,7 @@ typedef struct SimSorted {
 
 typedef struct SimParticles {
   int32_t count, capacity;
+  bool shuffled;           ///< particles came or went since the last sort: neighbour lists mean others
   bool coloured;           ///< colours are held and follow the particles
   SimSorted now;
   void *spare[SIM_SPARES]; ///< (count) words each: the sort moves arrays into them and swaps them

@@ -15,6 +15,9 @@
 #define BULK 0.5f
 // α of the artificial viscosity.
 #define ARTIFICIAL 0.02f
+// Lists are built anew when a particle may have moved by this share of the support since. A pair that comes into reach
+// meanwhile is missed, by both alike; at most it would have added (2 · 0.05)² of W' to a force, 3 % of what a pair can.
+#define STALE 0.05f
 // How much the speed of sound may change in one substep.
 #define RISE 1.01
 #define FALL 0.998
@@ -61,6 +64,27 @@ static double sound_now(const SimWorld *world) {
   return fmax(fmin(fmax(wanted, FALL * world->sound), RISE * world->sound), LEAST * wanted);
 }
 
+// ---- Lists -----------------------------------------------------------------------------------------------------------
+
+static void to_first_kernel(int32_t begin, int32_t end, const void *context) {
+  const SimParticles *p = context;
+  float *axes[3];
+  sim_particles_second_as_axes(p, axes);
+  for (int32_t i = begin; i < end; i++)
+    for (int k = 0; k < 4; k++) p->first[4 * (size_t)i + k] = k < 3 ? axes[k][i] : 0;
+}
+
+// Lists of the predicted positions: new ones, or those of before where no particle can have moved far.
+static bool lists(SimWorld *world, double move, double *since, SimError *error) {
+  world->moved += move;
+  if (!(world->moved <= (double)(STALE * world->cubic.h)) || world->particles.shuffled)
+    return sim_step_neighbours(world, SIM_STAGE_sort, SIM_STAGE_neighbours, since, error);
+  sim_parallel_for(world->threads, world->particles.count, to_first_kernel, &world->particles);
+  sim_particles_pad(&world->particles, world->particles.first);
+  sim_step_lap(world, SIM_STAGE_sort, since);
+  return true;
+}
+
 // ---- The substep -----------------------------------------------------------------------------------------------------
 
 static void velocity_to_work_kernel(int32_t begin, int32_t end, const void *context) {
@@ -82,7 +106,8 @@ static bool substep(SimWorld *world, float dt, SimError *error) {
   if (!sim_step_check(world, SIM_STAGE_predict, error)) return false;
   sim_step_lap(world, SIM_STAGE_predict, &since);
 
-  if (!sim_step_neighbours(world, SIM_STAGE_sort, SIM_STAGE_neighbours, &since, error)) return false;
+  double move = (double)dt * (double)sim_largest_speed(world, world->particles.now.next_velocity);
+  if (!lists(world, move, &since, error)) return false;
   world->profile.neighbour_pairs += world->neighbours.pairs;
 
   SimParticles *p = step.particles;

@@ -155,6 +155,7 @@ static void near_kernel(int32_t begin, int32_t end, const void *context) {
 bool sim_step_neighbours(SimWorld *world, SimStage sort_stage, SimStage list_stage, double *since, SimError *error) {
   SimParticles *particles = &world->particles;
   float radius = world->cubic.h, *axes[3];
+  world->moved = 0;
   if (!sim_particles_sort(particles, &world->sort, radius, world->threads)) return sim_fail(error, "out of memory");
   SimStep step = sim_step_make(world, 0);
   sim_parallel_for(world->threads, particles->count, near_kernel, &step);
