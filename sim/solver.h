@@ -38,11 +38,11 @@ typedef struct SimStep {
   const float *place;         ///< (count, 4), the positions that surface tension reads
   float cohesion, curvature;  ///< m/s², of surface tension
   SimDiffusion diffusion;
+  float wall_answer;          ///< κ, how much of a particle's pressure a wall answers with (solver_pbf.h)
   // Position based fluids
   float omega;                ///< ω, damping of the Jacobi iteration
   float relaxation;           ///< 1/m², ε
   float tensile;              ///< m², k
-  float wall_answer;          ///< κ, how much of a particle's pressure a wall answers with
   float warm;                 ///< s², turns `pressure` into the first λ
   bool stabilise;             ///< the corrections of this iteration move particles without changing their velocity
   // Smoothed particle hydrodynamics

@@ -16,17 +16,12 @@
 // searches for the same density error, 0.3 saves little more.
 #define STALE 0.2f
 
-// κ − 1 at a support of two spacings, see "Walls" in solver_pbf.h.
-#define WALL_ANSWER 0.4f
-
 static SimStep make_step(SimWorld *world, float dt) {
   SimStep step = sim_step_make(world, dt);
   float strength = world->cubic.lattice_gradient;
   step.omega = world->cubic.omega;
   step.relaxation = world->def.relaxation * strength;
   step.tensile = world->def.tensile / strength;
-  float share = fminf(1, 2 / world->def.support);
-  step.wall_answer = 1 + WALL_ANSWER * share * share * share;
   step.warm = dt * dt;
   return step;
 }

@@ -19,6 +19,14 @@ static float viscosity_share(const SimWorld *world, float dt) {
   return world->def.viscosity * fminf(steps, 1);
 }
 
+// κ − 1 at a support of two spacings, see "Walls" in solver_pbf.h.
+#define WALL_ANSWER 0.4f
+
+static float wall_answer(const SimWorld *world) {
+  float share = fminf(1, 2 / world->def.support);
+  return 1 + WALL_ANSWER * share * share * share;
+}
+
 SimStep sim_step_make(SimWorld *world, float dt) {
   SimStep step = {.wide = world->wide,
                   .threads = world->threads,
@@ -31,6 +39,7 @@ SimStep sim_step_make(SimWorld *world, float dt) {
                   .wall = &world->wall,
                   .particles = &world->particles,
                   .neighbours = &world->neighbours,
+                  .wall_answer = wall_answer(world),
                   .viscosity_share = viscosity_share(world, dt),
                   .viscosity = world->def.kinematic_viscosity,
                   .colour_diffusion = world->def.colour_diffusion,

@@ -59,13 +59,13 @@ void WIDE(sim_sph_density)(int32_t begin, int32_t end, const void *context) {
   }
 }
 
-// dv_i/dt = −Σ_j V (P_i + P_j) ∇W − P_i ∇f; positions and P = p/(ρ0 ρ²) in `second`.
+// dv_i/dt = −Σ_j V (P_i + P_j) ∇W − κ P_i ∇f; positions and P = p/(ρ0 ρ²) in `second`.
 void WIDE(sim_sph_force)(int32_t begin, int32_t end, const void *context) {
   const SimStep *step = context;
   const SimNeighbours *lists = step->neighbours;
   SimParticles *p = step->particles;
   const Spline s = spline_make(&step->cubic);
-  SimF slope = sim_f(6 * step->cubic.gradient_scale), dt = sim_f(step->dt);
+  SimF slope = sim_f(6 * step->cubic.gradient_scale), dt = sim_f(step->dt), wall = sim_f(step->wall_answer);
   for (int32_t i = begin; i < end; i += SIM_LANES) {
     const int32_t chunk = i / SIM_CHUNK;
     const uint32_t *index = lists->index + (size_t)lists->start[chunk] * SIM_CHUNK + i % SIM_CHUNK;
@@ -84,7 +84,7 @@ void WIDE(sim_sph_force)(int32_t begin, int32_t end, const void *context) {
     if (p->near[chunk]) sim_load4(p->solid + 4 * (size_t)i, solid);
     for (int k = 0; k < 3; k++) {
       float *v = p->now.next_velocity[k] + i;
-      sim_store(v, sim_load(v) - dt * (slope * sum[k] + own[3] * solid[k]));
+      sim_store(v, sim_load(v) - dt * (slope * sum[k] + wall * own[3] * solid[k]));
     }
   }
 }

@@ -2,6 +2,7 @@
 #include "sim_test.h"
 
 #include "sim/world.h"
+#include "validation.h"
 
 static SimBlockDef block;
 
@@ -87,7 +88,7 @@ static void sweeps_match_all_pairs(void **state) {
   sim_parallel_for(1, n, step.wide->sph_force, &step);
   for (int32_t i = 0; i < n; i++)
     for (int k = 0; k < 3; k++) {
-      double force = p->near[i / SIM_CHUNK] ? -pressure[i] * (double)p->solid[4 * i + k] : 0;
+      double force = p->near[i / SIM_CHUNK] ? -(double)step.wall_answer * pressure[i] * (double)p->solid[4 * i + k] : 0;
       for (int32_t j = 0; j < n; j++) {
         Pair near;
         if (pair(world, i, j, &near)) force -= (pressure[i] + pressure[j]) * near.over_r * near.d[k];
@@ -134,6 +135,51 @@ static void dam_break(void **state) {
     if (energy > 1.01 * start) fail_msg("energy %g of %g", energy, start);
     for (int32_t i = 0; i < frame->count; i++)
       assert_true((double)frame->position[3 * i] <= 0.4 + 2 * sqrt(9.81 * 0.6) * frame->time + 0.025);
+  }
+  sim_frame_buffer_destroy(buffer);
+  sim_world_destroy(world);
+}
+
+static void still_pool_stays_still(void **state) {
+  (void)state;
+  SimWorldDef def = sph_def((const float[3]){0.8f, 0.8f, 0.5f}, (const float[3]){0.8f, 0.4f, 0.5f});
+  SimWorld *world = test_create(&def);
+  double start = total_energy(world);
+  test_advance(world, 90);
+  SimMeasures measures = sim_world_measures(world);
+  double per_mass = measures.kinetic_energy / (1000 * 0.8 * 0.4 * 0.5);
+  print_message("pool after 1.5 s: density error mean %.4f, largest %.4f; kinetic energy %.1e gH\n", measures.mean_density_error,
+                measures.max_density_error, per_mass / (9.81 * 0.4));
+  assert_true(measures.mean_density_error <= 0.01 && measures.max_density_error <= 0.05);
+  assert_true(per_mass <= 5e-4 * 9.81 * 0.4);
+  assert_true(total_energy(world) <= 1.01 * start);
+  sim_world_destroy(world);
+}
+
+static void a_column_collapses_as_measured(void **state) {
+  (void)state;
+  ColumnCollapse result = validate_column_collapse(SIM_SOLVER_SPH, 1, 12, 8);
+  print_message("column: front %.3f rms, %.3f at most, shift %.2f; height %.3f at most; Ritter %.3f\n", result.front_rms,
+                result.front_largest, result.shift, result.height_largest, result.ritter_excess);
+  assert_true(result.front_rms <= 0.10 && result.front_largest <= 0.15);
+  assert_true(result.ritter_excess <= 0);
+}
+
+// A block dropped from 3 m, with a time step that is far too large: nothing leaves the tank, no energy is gained.
+static void a_block_dropped_from_high_up(void **state) {
+  (void)state;
+  SimBlockDef blocks[2] = {{{0, 0, 0}, {0.7f, 0.2f, 0.7f}}, {{0.2f, 3, 0.2f}, {0.5f, 3.3f, 0.5f}}};
+  SimWorldDef def = sph_def((const float[3]){0.7f, 4, 0.7f}, (const float[3]){1, 1, 1});
+  def.blocks = blocks;
+  def.block_count = 2;
+  def.time_step = 0.05f;
+  SimWorld *world = test_create(&def);
+  SimFrameBuffer *buffer = sim_frame_buffer_create();
+  double start = total_energy(world);
+  for (int f = 0; f < 60; f++) {
+    test_advance(world, 1);
+    test_inside_container(test_frame(world, 0, buffer));
+    assert_true(total_energy(world) <= 1.01 * start);
   }
   sim_frame_buffer_destroy(buffer);
   sim_world_destroy(world);
@@ -229,6 +275,9 @@ int main(void) {
       cmocka_unit_test(sweeps_match_all_pairs),
       cmocka_unit_test(free_fall_keeps_momentum),
       cmocka_unit_test(dam_break),
+      cmocka_unit_test(still_pool_stays_still),
+      cmocka_unit_test(a_column_collapses_as_measured),
+      cmocka_unit_test(a_block_dropped_from_high_up),
       cmocka_unit_test(radius_does_not_matter),
       cmocka_unit_test(any_number_of_threads_gives_the_same_bytes),
       cmocka_unit_test(degenerate_worlds),
