@@ -8,8 +8,8 @@
 
 #define PI 3.14159265358979323846
 // Shares of the tension: see tension.h.
-#define COHESION 0.14
-#define CURVATURE 0.31
+#define COHESION 0.125
+#define CURVATURE 0.27
 // Of Brackbill's bound, √(ρ d³/2πσ) (Brackbill, Kothe, Zemach, A Continuum Method for Modeling Surface Tension, 1992, Eq. 61).
 // From 0.5 on the drops of pbf simmer.
 #define COURANT 0.4

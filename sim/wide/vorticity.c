@@ -61,7 +61,8 @@ void WIDE(sim_vorticity_confine)(int32_t begin, int32_t end, const void *context
     }
     for (int a = 0; a < 3; a++) eta[a] = slope * eta[a];
     // η is a difference of |ω| over a spacing here; where it is a thousandth of |ω| or less it is noise and has no direction.
-    SimF length = sim_sqrt(eta[0] * eta[0] + eta[1] * eta[1] + eta[2] * eta[2]) + sim_f(1e-3f) * turn[3] + sim_f(1e-30f);
+    SimF length =
+        sim_sqrt(eta[0] * eta[0] + eta[1] * eta[1] + eta[2] * eta[2]) + sim_f(1e-3f) * turn[3] + sim_f(1e-30f);
     SimF scale = strength * sim_min(turn[3], most) / length;
     const SimF push[3] = {eta[1] * turn[2] - eta[2] * turn[1], eta[2] * turn[0] - eta[0] * turn[2],
                           eta[0] * turn[1] - eta[1] * turn[0]};

@@ -34,7 +34,8 @@ static void the_sweep_matches_all_pairs(void **state) {
       p->now.next_velocity[k][i] = (float)test_random(&seed);
     }
   sim_particles_pad(p, p->second);
-  double h = (double)world->cubic.h, volume = (double)world->cubic.volume, *expected = calloc((size_t)p->count, sizeof(double));
+  double h = (double)world->cubic.h, volume = (double)world->cubic.volume,
+         *expected = calloc((size_t)p->count, sizeof(double));
   for (int32_t i = 0; i < p->count; i++) {
     double own = (double)p->second[4 * i + 1], sum = 0;
     for (int32_t j = 0; j < p->count; j++) {
@@ -42,8 +43,9 @@ static void the_sweep_matches_all_pairs(void **state) {
       for (int k = 0; k < 3; k++) r2 += pow((double)p->first[4 * i + k] - (double)p->first[4 * j + k], 2);
       double r = sqrt(r2);
       if (i == j || r >= h) continue;
-      double weight = 0.1 * volume * sim_kernel_cubic(r, h) -
-                      2e-4 / (double)world->cubic.diffuse_moment * volume * sim_kernel_cubic_derivative(r, h) * r / (r2 + 0.01 * h * h);
+      double weight = 0.1 * volume * sim_kernel_cubic(r, h) - 2e-4 / (double)world->cubic.diffuse_moment * volume *
+                                                                  sim_kernel_cubic_derivative(r, h) * r /
+                                                                  (r2 + 0.01 * h * h);
       sum += weight * ((double)p->second[4 * j + 1] - own);
     }
     expected[i] = 1.5 * own - 0.5 * (double)p->now.next_velocity[1][i] + 0.7 * sum;
@@ -51,7 +53,8 @@ static void the_sweep_matches_all_pairs(void **state) {
   for (int k = 0; k < 3; k++) step.diffusion.value[k] = p->now.next_velocity[k];
   sim_parallel_for(1, p->count, step.wide->diffuse, &step);
   for (int32_t i = 0; i < p->count; i++)
-    if (fabs(expected[i] - (double)p->now.next_velocity[1][i]) > 1e-5) fail_msg("%d: %g, %g", i, expected[i], (double)p->now.next_velocity[1][i]);
+    if (fabs(expected[i] - (double)p->now.next_velocity[1][i]) > 1e-5)
+      fail_msg("%d: %g, %g", i, expected[i], (double)p->now.next_velocity[1][i]);
   free(expected);
   sim_world_destroy(world);
 }
@@ -84,13 +87,15 @@ static void a_shear_wave_decays(void **state) {
       float dt = (float)fmin(0.01 / rate, 1.0 / 60);
       int32_t n = world->particles.count;
       for (int32_t i = 0; i < n; i++)
-        world->particles.now.next_velocity[0][i] = (float)cos(wave * ((double)world->particles.now.position[1][i] - 4 * (double)d));
+        world->particles.now.next_velocity[0][i] =
+            (float)cos(wave * ((double)world->particles.now.position[1][i] - 4 * (double)d));
       SimStep step = sim_step_make(world, dt);
       double first = amplitude(world, world->particles.now.next_velocity, wave, 4 * (double)d);
       for (int k = 0; k < 50; k++) sim_step_viscosity(&step);
       double last = amplitude(world, world->particles.now.next_velocity, wave, 4 * (double)d);
       double measured = log(first / last) / (50 * (double)dt);
-      if (fabs(measured / rate - 1) > 0.1) fail_msg("nu %g: rate %g, expected %g", (double)viscosities[v], measured, rate);
+      if (fabs(measured / rate - 1) > 0.1)
+        fail_msg("nu %g: rate %g, expected %g", (double)viscosities[v], measured, rate);
       sim_world_destroy(world);
     }
 }
@@ -106,7 +111,8 @@ static void a_shear_wave_decays_in_flow(void **state) {
     SimWorld *world = test_create(&def);
     double wave = PI / (16 * (double)d), origin = 4 * (double)d, rate = (double)nu * wave * wave, time = 0.5 / rate;
     for (int32_t i = 0; i < world->particles.count; i++)
-      world->particles.now.velocity[0][i] = 0.02f * (float)cos(wave * ((double)world->particles.now.position[1][i] - origin));
+      world->particles.now.velocity[0][i] =
+          0.02f * (float)cos(wave * ((double)world->particles.now.position[1][i] - origin));
     double first = amplitude(world, world->particles.now.velocity, wave, origin);
     SimError error = {""};
     for (int k = 0; k < 10; k++)
@@ -145,7 +151,8 @@ static void the_share_does_not_depend_on_substeps(void **state) {
     SimWorld *world = test_create(&def);
     double wave = PI / 0.32;
     for (int32_t i = 0; i < world->particles.count; i++)
-      world->particles.now.next_velocity[0][i] = (float)cos(wave * ((double)world->particles.now.position[1][i] - 0.08));
+      world->particles.now.next_velocity[0][i] =
+          (float)cos(wave * ((double)world->particles.now.position[1][i] - 0.08));
     SimStep step = sim_step_make(world, k ? 0.0004f : 0.0032f);
     for (int s = 0; s < (k ? 160 : 20); s++) sim_step_viscosity(&step);
     left[k] = amplitude(world, world->particles.now.next_velocity, wave, 0.08);
@@ -166,7 +173,8 @@ static void a_step_of_colour_spreads(void **state) {
     def.colour_diffusion = diffusivities[which];
     SimWorld *world = test_create(&def);
     SimParticles *p = &world->particles;
-    double middle = 24 * (double)d, time = 25 * (double)d * (double)d / 4 / (double)diffusivities[which]; // √(4Dt) = 5 spacings
+    double middle = 24 * (double)d,
+           time = 25 * (double)d * (double)d / 4 / (double)diffusivities[which]; // √(4Dt) = 5 spacings
     for (int32_t i = 0; i < p->count; i++) {
       p->now.colour[0][i] = (double)p->now.position[1][i] < middle ? 0 : 1;
       p->now.colour[1][i] = 1 - p->now.colour[0][i];
@@ -193,12 +201,9 @@ static void a_step_of_colour_spreads(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(the_sweep_matches_all_pairs),
-      cmocka_unit_test(a_shear_wave_decays),
-      cmocka_unit_test(a_shear_wave_decays_in_flow),
-      cmocka_unit_test(the_thickest_liquid_is_calm),
-      cmocka_unit_test(the_share_does_not_depend_on_substeps),
-      cmocka_unit_test(a_step_of_colour_spreads),
+      cmocka_unit_test(the_sweep_matches_all_pairs),           cmocka_unit_test(a_shear_wave_decays),
+      cmocka_unit_test(a_shear_wave_decays_in_flow),           cmocka_unit_test(the_thickest_liquid_is_calm),
+      cmocka_unit_test(the_share_does_not_depend_on_substeps), cmocka_unit_test(a_step_of_colour_spreads),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

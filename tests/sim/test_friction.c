@@ -45,8 +45,10 @@ static void it_takes_what_it_says(void **state) {
     double left = f == 2 ? 0 : 2 / (1 - log(1 - (double)frictions[f]) * 2 * 0.001 / 0.02);
     for (int32_t i = 0; i < p->count; i++) {
       double expected = p->now.position[1][i] < 0.02f ? left : 2;
-      if (fabs((double)p->now.next_velocity[0][i] - expected) > 1e-4) fail_msg("friction %g: %g, expected %g", (double)frictions[f], (double)p->now.next_velocity[0][i], expected);
-      assert_true(fabsf(p->now.next_velocity[1][i] + 0.5f) < 1e-6f); // towards the wall and away from it nothing changes
+      if (fabs((double)p->now.next_velocity[0][i] - expected) > 1e-4)
+        fail_msg("friction %g: %g, expected %g", (double)frictions[f], (double)p->now.next_velocity[0][i], expected);
+      assert_true(fabsf(p->now.next_velocity[1][i] + 0.5f) <
+                  1e-6f); // towards the wall and away from it nothing changes
     }
     sim_world_destroy(world);
   }
@@ -71,8 +73,8 @@ static void water_on_a_slope(void **state) {
       speed[f] = mean_speed(world, false), lowest[f] = mean_speed(world, true);
       sim_world_destroy(world);
     }
-    print_message("solver %d, speed down a slope: free %.3f, 0.1 %.3f, 0.5 %.3f, 1 %.3f (lowest layer %.3f)\n", solver, speed[0], speed[1], speed[2],
-                  speed[3], lowest[3]);
+    print_message("solver %d, speed down a slope: free %.3f, 0.1 %.3f, 0.5 %.3f, 1 %.3f (lowest layer %.3f)\n", solver,
+                  speed[0], speed[1], speed[2], speed[3], lowest[3]);
     assert_true(fabs(speed[0] / (9.81 * 0.2 * time) - 1) < 0.001);
     assert_true(speed[1] < 0.98 * speed[0] && speed[2] < speed[1] && speed[3] < speed[2]);
     assert_true(fabs(lowest[3]) < 0.15 * speed[0]);
@@ -96,7 +98,8 @@ static void substeps_and_size_do_not_matter(void **state) {
     speed[k] = mean_speed(world, false) / (double)sqrtf(9.81f * d);
     sim_world_destroy(world);
   }
-  print_message("speed after ten spacings: %.3f, half the substep %.3f, half the size %.3f of 5\n", speed[0], speed[1], speed[2]);
+  print_message("speed after ten spacings: %.3f, half the substep %.3f, half the size %.3f of 5\n", speed[0], speed[1],
+                speed[2]);
   assert_true(speed[0] < 4.8 && fabs(speed[1] / speed[0] - 1) < 0.03 && fabs(speed[2] / speed[0] - 1) < 0.03);
 }
 
@@ -105,7 +108,8 @@ static void a_moving_obstacle_takes_water_along(void **state) {
   (void)state;
   SimWorldDef def = sheet_def(0, 0.02f);
   SimObstacleDef plate = sim_default_obstacle_def();
-  plate.body = (SimObstacle){.shape = SIM_BOX, .size = {3, 0.1f, 0.1f}, .position = {1.5f, 0.11f, 0.08f}, .rotation = {0, 0, 0, 1}};
+  plate.body = (SimObstacle){
+      .shape = SIM_BOX, .size = {3, 0.1f, 0.1f}, .position = {1.5f, 0.11f, 0.08f}, .rotation = {0, 0, 0, 1}};
   plate.friction = 0.5f;
   def.obstacle_count = 1;
   def.obstacles = &plate;

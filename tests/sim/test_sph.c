@@ -79,7 +79,8 @@ static void sweeps_match_all_pairs(void **state) {
     double density;
     pressure[i] = slow_pressure(world, &step, i, &density);
     most = fmax(most, pressure[i]);
-    if (fabs(density - (double)p->density[i]) > 2e-6) fail_msg("density of %d: %.8f, %.8f", i, density, (double)p->density[i]);
+    if (fabs(density - (double)p->density[i]) > 2e-6)
+      fail_msg("density of %d: %.8f, %.8f", i, density, (double)p->density[i]);
     if (fabs(pressure[i] - (double)p->second[4 * i + 3]) > 2e-3)
       fail_msg("pressure of %d: %.8f, %.8f", i, pressure[i], (double)p->second[4 * i + 3]);
   }
@@ -148,8 +149,8 @@ static void still_pool_stays_still(void **state) {
   test_advance(world, 90);
   SimMeasures measures = sim_world_measures(world);
   double per_mass = measures.kinetic_energy / (1000 * 0.8 * 0.4 * 0.5);
-  print_message("pool after 1.5 s: density error mean %.4f, largest %.4f; kinetic energy %.1e gH\n", measures.mean_density_error,
-                measures.max_density_error, per_mass / (9.81 * 0.4));
+  print_message("pool after 1.5 s: density error mean %.4f, largest %.4f; kinetic energy %.1e gH\n",
+                measures.mean_density_error, measures.max_density_error, per_mass / (9.81 * 0.4));
   assert_true(measures.mean_density_error <= 0.01 && measures.max_density_error <= 0.05);
   assert_true(per_mass <= 5e-4 * 9.81 * 0.4);
   assert_true(total_energy(world) <= 1.01 * start);
@@ -159,8 +160,8 @@ static void still_pool_stays_still(void **state) {
 static void a_column_collapses_as_measured(void **state) {
   (void)state;
   ColumnCollapse result = validate_column_collapse(SIM_SOLVER_SPH, 1, 12, 8);
-  print_message("column: front %.3f rms, %.3f at most, shift %.2f; height %.3f at most; Ritter %.3f\n", result.front_rms,
-                result.front_largest, result.shift, result.height_largest, result.ritter_excess);
+  print_message("column: front %.3f rms, %.3f at most, shift %.2f; height %.3f at most; Ritter %.3f\n",
+                result.front_rms, result.front_largest, result.shift, result.height_largest, result.ritter_excess);
   assert_true(result.front_rms <= 0.10 && result.front_largest <= 0.15);
   assert_true(result.ritter_excess <= 0);
 }
@@ -215,7 +216,8 @@ static void radius_does_not_matter(void **state) {
 static uint64_t run(int32_t threads) {
   SimWorldDef def = sph_def((const float[3]){1.5f, 1, 0.5f}, (const float[3]){0.5f, 0.7f, 0.5f});
   SimObstacleDef pillar = sim_default_obstacle_def();
-  pillar.body = (SimObstacle){.shape = SIM_CYLINDER, .size = {0.2f, 0.6f, 0}, .position = {0.9f, 0.3f, 0.25f}, .rotation = {0, 0, 0, 1}};
+  pillar.body = (SimObstacle){
+      .shape = SIM_CYLINDER, .size = {0.2f, 0.6f, 0}, .position = {0.9f, 0.3f, 0.25f}, .rotation = {0, 0, 0, 1}};
   def.obstacle_count = 1;
   def.obstacles = &pillar;
   def.threads = threads;

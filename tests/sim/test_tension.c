@@ -39,14 +39,15 @@ static double slow_cohesion(double r, double h) {
 static void sweeps_match_all_pairs(void **state) {
   (void)state;
   SimWorldDef def = weightless_def(SIM_SOLVER_PBF, 8, false);
-  for (int k = 0; k < 3; k++) block.min[k] -= def.container.max[0] / 2 - 0.02f, block.max[k] -= def.container.max[0] / 2 - 0.02f;
+  for (int k = 0; k < 3; k++)
+    block.min[k] -= def.container.max[0] / 2 - 0.02f, block.max[k] -= def.container.max[0] / 2 - 0.02f;
   def.jitter = 0.3f; // in a corner: walls count in the normals
   SimWorld *world = test_create(&def);
   SimParticles *p = &world->particles;
   SimStep step = sim_step_make(world, 0.002f);
   int32_t n = p->count;
   double h = (double)world->cubic.h, volume = (double)world->cubic.volume, mass = 1000 * volume;
-  double gamma = 0.14 * 0.072 * 7040 / (21 * 1e6 * h * h), bend = 0.31 * 0.072 / (1000 * 3 * h * h / 80), most = 0;
+  double gamma = 0.125 * 0.072 * 7040 / (21 * 1e6 * h * h), bend = 0.27 * 0.072 / (1000 * 3 * h * h / 80), most = 0;
   double(*normal)[4] = calloc((size_t)n, sizeof *normal);
   for (int32_t i = 0; i < n; i++)
     for (int k = 0; k < 3; k++) p->now.next_velocity[k][i] = 0;
@@ -58,7 +59,8 @@ static void sweeps_match_all_pairs(void **state) {
       double sum[3] = {0}, density = volume * sim_kernel_cubic(0, h);
       for (int32_t j = 0; j < n; j++) {
         double e[3], r = 0;
-        for (int k = 0; k < 3; k++) e[k] = (double)p->second[4 * i + k] - (double)p->second[4 * j + k], r += e[k] * e[k];
+        for (int k = 0; k < 3; k++)
+          e[k] = (double)p->second[4 * i + k] - (double)p->second[4 * j + k], r += e[k] * e[k];
         r = sqrt(r);
         if (i == j || r >= h) continue;
         density += volume * sim_kernel_cubic(r, h);
@@ -78,7 +80,8 @@ static void sweeps_match_all_pairs(void **state) {
         continue;
       }
       for (int k = 0; k < 3; k++) {
-        double v = (double)p->now.next_velocity[k][i], moved = (double)p->first[4 * i + k] - (double)p->second[4 * i + k];
+        double v = (double)p->now.next_velocity[k][i],
+               moved = (double)p->first[4 * i + k] - (double)p->second[4 * i + k];
         most = fmax(most, fabs(v));
         if (fabs(v - 0.002 * sum[k]) > 1e-5) fail_msg("tension on %d: %g, %g", i, 0.002 * sum[k], v);
         assert_true(fabs(moved - 0.002 * v) < 1e-7);
@@ -136,9 +139,9 @@ static void a_cube_becomes_a_ball(void **state) {
       big = fmax(big, shape.second[k]), small = fmin(small, shape.second[k]), gyration += shape.second[k];
       drift += pow(shape.centre[k] - start.centre[k], 2), momentum += pow(measures.momentum[k], 2);
     }
-    print_message("solver %d: axes 1:%.4f, reach 1:%.4f, radius %.4f of the ball's, drift %.1e R, density error %.4f\n", solver,
-                  sqrt(big / small), shape.widest / shape.narrowest, sqrt(gyration * 5 / 3) / radius, sqrt(drift) / radius,
-                  measures.mean_density_error);
+    print_message("solver %d: axes 1:%.4f, reach 1:%.4f, radius %.4f of the ball's, drift %.1e R, density error %.4f\n",
+                  solver, sqrt(big / small), shape.widest / shape.narrowest, sqrt(gyration * 5 / 3) / radius,
+                  sqrt(drift) / radius, measures.mean_density_error);
     assert_true(sqrt(big / small) < 1.05 && shape.widest / shape.narrowest < 1.05);
     assert_true(fabs(sqrt(gyration * 5 / 3) / radius - 1) < 0.02);
     assert_true(sqrt(drift) < 1e-4 * radius);
@@ -169,7 +172,8 @@ static void a_drop_rings_with_lambs_tone(void **state) {
     for (int32_t i = 0; i < world->particles.count; i++)
       for (int k = 0; k < 3; k++)
         world->particles.now.velocity[k][i] =
-            (float)(0.05 * omega * (k == 2 ? 2 : -1) * ((double)world->particles.now.position[k][i] - (double)drop.centre[k]));
+            (float)(0.12 * omega * (k == 2 ? 2 : -1) *
+                    ((double)world->particles.now.position[k][i] - (double)drop.centre[k]));
     double before = 0, crossing[8] = {0};
     int crossings = 0;
     for (int f = 1; f <= 100 && crossings < 4; f++) {

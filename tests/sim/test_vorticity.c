@@ -56,7 +56,8 @@ static void a_rigid_rotation_has_twice_its_rate(void **state) {
   int even = 0;
   for (int32_t i = 0; i < p->count; i++) {
     bool deep = true;
-    for (int k = 0; k < 3; k++) deep = deep && p->first[4 * i + k] > block.min[k] + 0.08f && p->first[4 * i + k] < block.max[k] - 0.08f;
+    for (int k = 0; k < 3; k++)
+      deep = deep && p->first[4 * i + k] > block.min[k] + 0.08f && p->first[4 * i + k] < block.max[k] - 0.08f;
     even += deep;
     // What ε d |ω|² dt would be with a direction: 0.005 m/s.
     for (int k = 0; k < 3 && deep; k++) assert_true(fabsf(p->now.next_velocity[k][i]) < 1e-4f);
@@ -73,10 +74,12 @@ static void sweeps_match_all_pairs(void **state) {
   SimParticles *p = &world->particles;
   SimStep step = sim_step_make(world, 0.01f);
   int32_t n = p->count;
-  double h = (double)world->cubic.h, volume = (double)world->cubic.volume, d = 0.02, (*curl)[4] = calloc((size_t)n, sizeof *curl), (*v)[3] = calloc((size_t)n, sizeof *v);
+  double h = (double)world->cubic.h, volume = (double)world->cubic.volume, d = 0.02,
+         (*curl)[4] = calloc((size_t)n, sizeof *curl), (*v)[3] = calloc((size_t)n, sizeof *v);
   for (int32_t i = 0; i < n; i++)
     for (int k = 0; k < 3; k++)
-      v[i][k] = (double)(p->now.next_velocity[k][i] = sinf(9 * p->first[4 * i + (k + 1) % 3]) + (k == 1) * p->first[4 * i]);
+      v[i][k] =
+          (double)(p->now.next_velocity[k][i] = sinf(9 * p->first[4 * i + (k + 1) % 3]) + (k == 1) * p->first[4 * i]);
   sim_step_vorticity(&step);
   for (int pass = 0; pass < 2; pass++)
     for (int32_t i = 0; i < n; i++) {
@@ -90,13 +93,15 @@ static void sweeps_match_all_pairs(void **state) {
         moment -= g * r * r / 3;
         for (int k = 0; k < 3; k++) u[k] = v[j][k] - v[i][k];
         for (int k = 0; k < 3; k++)
-          sum[k] += pass ? (curl[j][3] - curl[i][3]) * g * e[k] : -g * (u[(k + 1) % 3] * e[(k + 2) % 3] - u[(k + 2) % 3] * e[(k + 1) % 3]);
+          sum[k] += pass ? (curl[j][3] - curl[i][3]) * g * e[k]
+                         : -g * (u[(k + 1) % 3] * e[(k + 2) % 3] - u[(k + 2) % 3] * e[(k + 1) % 3]);
       }
       double size = 0;
       if (!pass) {
         for (int k = 0; k < 3; k++) {
           curl[i][k] = sum[k] / fmax(moment, 0.1), size += curl[i][k] * curl[i][k];
-          if (fabs(curl[i][k] - (double)p->work[4 * i + k]) > 1e-3) fail_msg("curl of %d: %g, %g", i, curl[i][k], (double)p->work[4 * i + k]);
+          if (fabs(curl[i][k] - (double)p->work[4 * i + k]) > 1e-3)
+            fail_msg("curl of %d: %g, %g", i, curl[i][k], (double)p->work[4 * i + k]);
         }
         curl[i][3] = sqrt(size);
         continue;
@@ -131,7 +136,8 @@ static double energy_left(SimSolver solver, float confinement, float scale, doub
   SimParticles *p = &world->particles;
   double mass = 1000 * 0.24 * 0.24 * 0.32 * pow((double)scale, 3);
   for (int32_t i = 0; i < p->count; i++) {
-    double x = (double)p->now.position[0][i] / (double)scale - 0.4, z = (double)p->now.position[2][i] / (double)scale - 0.4;
+    double x = (double)p->now.position[0][i] / (double)scale - 0.4,
+           z = (double)p->now.position[2][i] / (double)scale - 0.4;
     double turn = 4 * exp(-(x * x + z * z) / (2 * 0.04 * 0.04));
     p->now.velocity[0][i] = (float)(-turn * z) * scale;
     p->now.velocity[2][i] = (float)(turn * x) * scale;
@@ -141,7 +147,8 @@ static double energy_left(SimSolver solver, float confinement, float scale, doub
   for (int f = 0; f < 20; f++)
     if (!sim_world_advance(world, 0.05, &error)) fail_msg("%s", error.message);
   SimMeasures end = sim_world_measures(world);
-  *momentum = sqrt(pow(end.momentum[0], 2) + pow(end.momentum[1], 2) + pow(end.momentum[2], 2)) / sqrt(2 * mass * start);
+  *momentum =
+      sqrt(pow(end.momentum[0], 2) + pow(end.momentum[1], 2) + pow(end.momentum[2], 2)) / sqrt(2 * mass * start);
   sim_world_destroy(world);
   return end.kinetic_energy / start;
 }
@@ -150,9 +157,11 @@ static void a_whirl_keeps_more_of_its_energy(void **state) {
   (void)state;
   for (int solver = 0; solver < 2; solver++) {
     double momentum[3], without = energy_left((SimSolver)solver, 0, 1, &momentum[0]),
-           with = energy_left((SimSolver)solver, 0.2f, 1, &momentum[1]), most = energy_left((SimSolver)solver, 1, 1, &momentum[2]);
-    print_message("solver %d: of a whirl's energy %.3f are left, %.3f with confinement 0.2, %.3f with 1; momentum %.1e, %.1e\n", solver, without,
-                  with, most, momentum[1], momentum[2]);
+                        with = energy_left((SimSolver)solver, 0.2f, 1, &momentum[1]),
+                        most = energy_left((SimSolver)solver, 1, 1, &momentum[2]);
+    print_message(
+        "solver %d: of a whirl's energy %.3f are left, %.3f with confinement 0.2, %.3f with 1; momentum %.1e, %.1e\n",
+        solver, without, with, most, momentum[1], momentum[2]);
     assert_true(with > 1.02 * without && most > with && most < 3);
     assert_true(momentum[0] < 1e-5 && momentum[1] < 0.01 && momentum[2] < 0.05);
   }
@@ -160,7 +169,8 @@ static void a_whirl_keeps_more_of_its_energy(void **state) {
 
 static void scale_does_not_matter(void **state) {
   (void)state;
-  double momentum, large = energy_left(SIM_SOLVER_PBF, 0.5f, 1, &momentum), small = energy_left(SIM_SOLVER_PBF, 0.5f, 0.1f, &momentum);
+  double momentum, large = energy_left(SIM_SOLVER_PBF, 0.5f, 1, &momentum),
+                   small = energy_left(SIM_SOLVER_PBF, 0.5f, 0.1f, &momentum);
   print_message("confinement in water of a tenth of the size: %.3f, %.3f\n", large, small);
   assert_true(fabs(large / small - 1) < 0.02);
 }
