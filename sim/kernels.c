@@ -73,6 +73,14 @@ static double jacobi_damping(double lattice_gradient, double h) {
   return fmin(1, 1.7 / worst);
 }
 
+static double diffuse_degree(double r, double h) {
+  return -sim_kernel_cubic_derivative(r, h) * r / (r * r + (double)SIM_DIFFUSE_SOFT * h * h);
+}
+
+static double diffuse_moment(double r, double h) {
+  return diffuse_degree(r, h) * r * r / 3;
+}
+
 SimCubic sim_cubic_make(float spacing, float support) {
   double h = (double)support * spacing;
   double volume = 1 / sim_lattice_sum(sim_kernel_cubic, spacing, h);
@@ -85,5 +93,7 @@ SimCubic sim_cubic_make(float spacing, float support) {
                     .value_scale = (float)value_scale,
                     .gradient_scale = (float)(value_scale / h),
                     .omega = (float)jacobi_damping(gradient, h),
+                    .diffuse_moment = (float)(volume * sim_lattice_sum(diffuse_moment, spacing, h)),
+                    .diffuse_degree = (float)(volume * sim_lattice_sum(diffuse_degree, spacing, h)),
                     .lattice_gradient = (float)gradient};
 }

@@ -23,6 +23,9 @@ extern const SimKernelFunction sim_kernels[SIM_KERNEL_COUNT]; ///< cubic spline,
 double sim_kernel_cubic(double r, double h);
 double sim_kernel_cubic_derivative(double r, double h);
 
+/// Softening of diffusion at small distances: see diffusion.c.
+#define SIM_DIFFUSE_SOFT 0.01f
+
 /// The cubic spline in single precision for one support radius and one particle spacing, times the volume V of a
 /// particle. V is calibrated so that a particle inside the cubic lattice of that spacing sees exactly V Σ W = 1 (its own
 /// W included): at rest the fluid is neither compressed nor stretched, and the mass of a particle is ρ0 V.
@@ -33,6 +36,8 @@ typedef struct SimCubic {
   float value_scale;    ///< V · 8/(πh³): V W(0)
   float gradient_scale; ///< 1/m, V · 8/(πh⁴)
   float omega;          ///< damping of a Jacobi iteration on densities with this kernel
+  float diffuse_moment; ///< Σ V |dW/dr| r³/(3 (r² + soft h²)) in the lattice: near 1
+  float diffuse_degree; ///< 1/m², Σ V |dW/dr| r/(r² + soft h²) there
   float lattice_gradient; ///< 1/m², Σ |V ∇W|² over the neighbours in the lattice: makes ε and k of the solver free of scale
 } SimCubic;
 

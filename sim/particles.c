@@ -35,6 +35,7 @@ bool sim_particles_reserve(SimParticles *particles, int32_t capacity) {
     if (!sim_reserve(&particles->spare[k], n, sizeof(float))) return false;
   if (!sim_reserve((void **)&particles->first, 4 * n, sizeof(float)) ||
       !sim_reserve((void **)&particles->second, 4 * n, sizeof(float)) ||
+      (particles->with_work && !sim_reserve((void **)&particles->work, 4 * n, sizeof(float))) ||
       !sim_reserve_keep((void **)&particles->density, n, sizeof(float)) ||
       !sim_reserve((void **)&particles->solid, 4 * n, sizeof(float)) ||
       !sim_reserve((void **)&particles->near, n / SIM_CHUNK, 1))
@@ -50,6 +51,7 @@ void sim_particles_free(SimParticles *particles) {
   for (int k = 0; k < SIM_SPARES; k++) sim_release(particles->spare[k]);
   sim_release(particles->first);
   sim_release(particles->second);
+  sim_release(particles->work);
   sim_release(particles->density);
   sim_release(particles->solid);
   sim_release(particles->near);
@@ -70,6 +72,7 @@ void sim_particles_add(SimParticles *particles, uint32_t id, const float positio
                        const float colour[3]) {
   assert(particles->count < particles->capacity);
   int32_t i = particles->count++;
+  particles->shuffled = true;
   for (int k = 0; k < 3; k++) {
     particles->now.position[k][i] = position[k];
     particles->now.velocity[k][i] = particles->now.next_velocity[k][i] = velocity[k];
@@ -87,6 +90,11 @@ void sim_particles_pad(const SimParticles *particles, float *four) {
   size_t end = padded(particles->count);
   for (size_t i = (size_t)particles->count; i < end; i++)
     for (int k = 0; k < 4; k++) four[4 * i + k] = k < 3 ? SIM_FAR : 0;
+}
+
+void sim_particles_pad_zero(const SimParticles *particles, float *four) {
+  size_t n = (size_t)particles->count;
+  memset(four + 4 * n, 0, 4 * (padded(particles->count) - n) * sizeof(float));
 }
 
 // ---- Sort ------------------------------------------------------------------------------------------------------------
@@ -117,6 +125,7 @@ bool sim_particles_sort(SimParticles *particles, SimCellSort *sort, float cell_s
   sim_particles_second_as_axes(particles, context.axes);
   if (!sim_grid_sort(sort, context.axes, particles->count, cell_size, threads)) return false;
   context.order = sort->order;
+  particles->shuffled = false;
   sim_parallel_for(threads, particles->count, to_first_kernel, &context);
   sim_particles_pad(particles, particles->first);
   sim_parallel_for(threads, particles->count, to_axes_kernel, &context);

@@ -29,11 +29,14 @@ typedef struct SimSorted {
 
 typedef struct SimParticles {
   int32_t count, capacity;
+  bool shuffled;           ///< particles came or went since the last sort: neighbour lists mean others
   bool coloured;           ///< colours are held and follow the particles
   SimSorted now;
   void *spare[SIM_SPARES]; ///< (count) words each: the sort moves arrays into them and swaps them
   // Work arrays in the present order.
   float *first, *second;   ///< (count, 4): x, y, z of the predicted position, m, and a number that the stages name
+  float *work;             ///< (count, 4), where `with_work`: another one that the stages name
+  bool with_work;
   float *density;          ///< share of the rest density in a settled state; pbf keeps inherited compression here meanwhile
   float *solid;            ///< (count, 4): gradient of the walls' share of the density, 1/m, and the share itself
   uint8_t *near;           ///< (chunks): SIM_NEAR_… of each chunk
@@ -71,5 +74,7 @@ bool sim_particles_sort(SimParticles *particles, SimCellSort *sort, float cell_s
 
 /// Put the particles infinitely far away behind the last one of `first` or `second`.
 void sim_particles_pad(const SimParticles *particles, float *four);
+/// Put zeros there: velocities, normals.
+void sim_particles_pad_zero(const SimParticles *particles, float *four);
 
 #endif

@@ -27,4 +27,5 @@ void sim_particles_remove(SimParticles *particles, const uint8_t *gone) {
   int32_t arrays = sim_particles_list(&particles->now, particles->coloured, list);
   for (int32_t a = 0; a < arrays; a++) kept = compact(*list[a], first, particles->count, gone);
   particles->count = kept;
+  particles->shuffled = true;
 }

@@ -1,4 +1,4 @@
-// Lido's simulator: water made of particles (position based fluids), and the surface stages that turn any set of
+// Lido's simulator: water made of particles (position based fluids, or SPH), and the surface stages that turn any set of
 // particles into a frame that can be drawn.
 //
 // Plain C17, libm and OpenMP; no OpenGL, no files, no window. SI units, y up.
@@ -98,8 +98,8 @@ typedef struct SimPoseKey {
 typedef struct SimObstacleDef {
   SimObstacle body;            ///< shape, and the pose at the start
   SimMotion motion;
-  float friction;              ///< share of the sliding speed that the wall takes from the water beside it: 0 slips freely,
-                               ///< 1 sticks; [0, 1]
+  float friction;              ///< share of the sliding speed that the wall takes from the layer of water beside it on a way of
+                               ///< one spacing (friction.c): 0 slips freely, 1 sticks; [0, 1]
   // SIM_SCRIPTED: pose(t) = that of the keys (the start's where there are none) + stroke · (1 − cos(2π (t − start)/period))/2
   int32_t key_count;
   const SimPoseKey *keys;      ///< (key_count), copied
@@ -128,10 +128,12 @@ typedef struct SimWorldDef {
                                ///< default 0.8, range [0.05, 2]
   int32_t iterations;          ///< density iterations a substep, default 4, range [1, 100]; the last of several moves
                                ///< particles without changing their velocity (solver_pbf.h)
-  float viscosity;             ///< XSPH factor c, non-dimensional, default 0.01, range [0, 0.5] (Macklin & Müller, Eq. 17)
+  float viscosity;             ///< XSPH factor c, non-dimensional, default 0.01, range [0, 0.5] (Macklin & Müller, Eq. 17): the
+                               ///< share in a time of 0.1 √(spacing/gravity); in a substep where there is no gravity
   float kinematic_viscosity;   ///< m²/s, ν of the liquid, default 1e-6 (water), range [0, 10]
-  float surface_tension;       ///< N/m, default 0, range [0, 10] (Akinci et al. 2013)
-  float vorticity;             ///< vorticity confinement, non-dimensional, default 0, range [0, 1] (Macklin & Müller, Eq. 16)
+  float surface_tension;       ///< N/m, default 0, range [0, 10] (Akinci et al. 2013; tension.h)
+  float vorticity;             ///< vorticity confinement ε, non-dimensional (vorticity.c), default 0, range [0, 1] (Macklin &
+                               ///< Müller, Eq. 16)
   float relaxation;            ///< ε_rel of the constraint, non-dimensional, default 0.1, range [1e-3, 10] (Eq. 11)
   float tensile;               ///< k_rel of the artificial pressure, non-dimensional, default 0, range [0, 0.1] (Eq. 13)
   SimContainer container;      ///< default: 3 × 1.6 × 1 m, corner at the origin
@@ -259,7 +261,7 @@ void sim_frame_buffer_destroy(SimFrameBuffer *buffer); ///< NULL is allowed
 
 /// Stages of a step and of a frame, in the order in which they run.
 #define SIM_STAGES(X) \
-  X(predict) X(sort) X(neighbours) X(warm_start) X(density) X(correct) X(velocity) X(viscosity) \
+  X(predict) X(sort) X(neighbours) X(tension) X(warm_start) X(density) X(correct) X(velocity) X(vorticity) X(viscosity) X(mix) \
   X(frame) X(classify) X(anisotropy) X(flags) X(height_field)
 typedef enum SimStage {
 #define SIM_STAGE_ENUM(name) SIM_STAGE_##name,

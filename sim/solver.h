@@ -11,6 +11,14 @@
 #include "sim/sim.h"
 #include "sim/wall_table.h"
 
+/// One stage of a diffusion (diffusion.c): of the values in `second`, y → keep y + before · (what stands in `value`) +
+/// gain Σ_j (share V W + spread V |dW/dr| r/(r² + soft h²)/moment) (y_j − y), into `value`.
+typedef struct SimDiffusion {
+  float share, spread; ///< –, m²
+  float keep, before, gain;
+  float *value[3];
+} SimDiffusion;
+
 /// What travels through one substep.
 typedef struct SimStep {
   const SimWide *wide;
@@ -25,19 +33,26 @@ typedef struct SimStep {
   const SimWallTable *wall;
   SimParticles *particles;
   SimNeighbours *neighbours;
-  float clamp_speed;     ///< m/s, to which the clamp may bring a particle that was slower
-  SimReaction *reaction; ///< what floating bodies get is noted here; NULL where none floats, or nothing is to be noted
-  // Viscosity: v_i += Σ_j (share W_ij + diffusion |∇W_ij|/r) (v_j − v_i)
-  float viscosity_share;     ///< XSPH's c
-  float viscosity_diffusion; ///< m², 2 ν dt
+  float clamp_speed;          ///< m/s, to which the clamp may bring a particle that was slower
+  SimReaction *reaction;      ///< what floating bodies get is noted here; NULL where none floats, or nothing is to be noted
+  float viscosity_share;      ///< XSPH's c of this substep
+  float viscosity;            ///< m²/s, ν
+  float colour_diffusion;     ///< m²/s
+  float confinement;          ///< ε of vorticity confinement
+  const float *place;         ///< (count, 4), the positions that surface tension reads
+  float cohesion, curvature;  ///< m/s², of surface tension
+  SimDiffusion diffusion;
+  float wall_answer;          ///< κ, how much of a particle's pressure a wall answers with (solver_pbf.h)
   // Position based fluids
-  float omega;       ///< ω, damping of the Jacobi iteration
-  float relaxation;  ///< 1/m², ε
-  float tensile;     ///< m², k
-  float wall_answer; ///< κ, how much of a particle's pressure a wall answers with
-  float warm;        ///< s², turns `pressure` into the first λ
-  bool stabilise;    ///< the corrections of this iteration move particles without changing their velocity
-  bool measure;      ///< only measure the present state: nothing is corrected
+  float omega;                ///< ω, damping of the Jacobi iteration
+  float relaxation;           ///< 1/m², ε
+  float tensile;              ///< m², k
+  float warm;                 ///< s², turns `pressure` into the first λ
+  bool stabilise;             ///< the corrections of this iteration move particles without changing their velocity
+  // Smoothed particle hydrodynamics
+  float stiffness;            ///< m²/s², c²
+  float bulk;                 ///< m²/s, bulk viscosity
+  bool measure;               ///< only measure the present state: nothing is corrected
 } SimStep;
 
 typedef struct SimWorld SimWorld;
@@ -69,8 +84,15 @@ void sim_step_predict(const SimStep *step);
 bool sim_step_neighbours(SimWorld *world, SimStage sort_stage, SimStage list_stage, double *since, SimError *error);
 /// Give the floating bodies what the sweep that has just ended noted; the particles are in `first`.
 void sim_step_collect(const SimStep *step);
-/// XSPH and the viscosity of the liquid; reads the positions in `first`, changes next_velocity.
+/// Vorticity confinement (vorticity.c), XSPH and the viscosity of the liquid (diffusion.c), friction at walls
+/// (friction.c): positions in `first`, next_velocity changes. Each does nothing where the Def asks for none.
+void sim_step_vorticity(const SimStep *step);
 void sim_step_viscosity(const SimStep *step);
+void sim_step_friction(const SimStep *step);
+/// Colours of neighbours mix (diffusion.c).
+void sim_step_mix(const SimStep *step);
+/// Vorticity, viscosity, friction and mixing with the time they take.
+void sim_step_finish(SimWorld *world, const SimStep *step, double *since);
 /// Whether next_velocity can be followed; otherwise *error names stage and particle.
 bool sim_step_check(SimWorld *world, SimStage stage, SimError *error);
 /// The positions in `first` and next_velocity become the state.

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "sim/parallel.h"
+#include "sim/tension.h"
 #include "sim/world.h"
 
 // The longest adaptive substep: gravity alone moves a particle from rest by this share of a spacing. Beyond about 0.015 the
@@ -15,17 +16,12 @@
 // searches for the same density error, 0.3 saves little more.
 #define STALE 0.2f
 
-// κ − 1 at a support of two spacings, see "Walls" in solver_pbf.h.
-#define WALL_ANSWER 0.4f
-
 static SimStep make_step(SimWorld *world, float dt) {
   SimStep step = sim_step_make(world, dt);
   float strength = world->cubic.lattice_gradient;
   step.omega = world->cubic.omega;
   step.relaxation = world->def.relaxation * strength;
   step.tensile = world->def.tensile / strength;
-  float share = fminf(1, 2 / world->def.support);
-  step.wall_answer = 1 + WALL_ANSWER * share * share * share;
   step.warm = dt * dt;
   return step;
 }
@@ -73,8 +69,6 @@ static bool warm_start(SimWorld *world, const SimStep *step, double *moved, doub
   SimStep start = *step; // compression that comes from the bodies' moves is new
   start.boundary = step->start;
   start.reaction = NULL;
-  sim_parallel_for(step->threads, p->count, start_to_second_kernel, p);
-  sim_particles_pad(p, p->second);
   sim_parallel_for(step->threads, p->count, step->wide->pbf_inherit, &start);
   sim_parallel_for(step->threads, p->count, step->wide->pbf_prepare, step);
   *moved = correct(step);
@@ -125,22 +119,26 @@ static bool substep(SimWorld *world, float dt, SimError *error) {
   if (!sim_step_neighbours(world, SIM_STAGE_sort, SIM_STAGE_neighbours, &since, error)) return false;
   world->profile.neighbour_pairs += world->neighbours.pairs;
 
+  sim_parallel_for(step.threads, world->particles.count, start_to_second_kernel, &world->particles);
+  sim_particles_pad(&world->particles, world->particles.second);
+  sim_step_tension(&step, &world->def, world->particles.second);
+  sim_step_lap(world, SIM_STAGE_tension, &since);
+
   if (!solve_density(world, &step, &since, error)) return false;
   ScaleContext scale = {world->particles.now.pressure, step.inverse_dt * step.inverse_dt};
   sim_parallel_for(step.threads, world->particles.count, scale_kernel, &scale);
   if (!sim_step_check(world, SIM_STAGE_velocity, error)) return false;
   sim_step_lap(world, SIM_STAGE_velocity, &since);
 
-  sim_step_viscosity(&step);
-  sim_step_lap(world, SIM_STAGE_viscosity, &since);
-
+  sim_step_finish(world, &step, &since);
   sim_step_commit(world);
   return true;
 }
 
 static double longest(const SimWorld *world) {
   double pull = (double)sim_pull(world);
-  return pull > 0 ? sqrt((double)REST_MOVE * (double)world->cubic.spacing / pull) : 1.0 / 60;
+  double rest = pull > 0 ? sqrt((double)REST_MOVE * (double)world->cubic.spacing / pull) : 1.0 / 60;
+  return fmin(rest, sim_tension_longest(world));
 }
 
 const SimMethod sim_method_pbf = {.name = "pbf", .substep = substep, .longest = longest};

@@ -11,6 +11,22 @@ void sim_step_lap(SimWorld *world, SimStage stage, double *since) {
   *since = now;
 }
 
+// XSPH's c stands for a time of 0.1 √(d/g): see diffusion.c.
+static float viscosity_share(const SimWorld *world, float dt) {
+  const float *g = world->gravity;
+  float pull = sqrtf(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
+  float steps = pull > 0 ? 10 * dt * sqrtf(pull / world->cubic.spacing) : 1;
+  return world->def.viscosity * fminf(steps, 1);
+}
+
+// κ − 1 at a support of two spacings, see "Walls" in solver_pbf.h.
+#define WALL_ANSWER 0.4f
+
+static float wall_answer(const SimWorld *world) {
+  float share = fminf(1, 2 / world->def.support);
+  return 1 + WALL_ANSWER * share * share * share;
+}
+
 SimStep sim_step_make(SimWorld *world, float dt) {
   SimStep step = {.wide = world->wide,
                   .threads = world->threads,
@@ -26,8 +42,11 @@ SimStep sim_step_make(SimWorld *world, float dt) {
                   .neighbours = &world->neighbours,
                   .clamp_speed = world->motion.clamp_speed,
                   .reaction = world->motion.rigid && dt > 0 ? &world->motion.reaction : NULL,
-                  .viscosity_share = world->def.viscosity,
-                  .viscosity_diffusion = 2 * world->def.kinematic_viscosity * dt};
+                  .wall_answer = wall_answer(world),
+                  .viscosity_share = viscosity_share(world, dt),
+                  .viscosity = world->def.kinematic_viscosity,
+                  .colour_diffusion = world->def.colour_diffusion,
+                  .confinement = world->def.vorticity};
   memcpy(step.gravity, world->gravity, sizeof step.gravity);
   return step;
 }
@@ -188,6 +207,7 @@ static void near_kernel(int32_t begin, int32_t end, const void *context) {
 bool sim_step_neighbours(SimWorld *world, SimStage sort_stage, SimStage list_stage, double *since, SimError *error) {
   SimParticles *particles = &world->particles;
   float radius = world->cubic.h, *axes[3];
+  world->moved = 0;
   if (!sim_particles_sort(particles, &world->sort, radius, world->threads)) return sim_fail(error, "out of memory");
   SimStep step = sim_step_make(world, 0);
   sim_parallel_for(world->threads, particles->count, near_kernel, &step);
@@ -203,20 +223,16 @@ bool sim_step_neighbours(SimWorld *world, SimStage sort_stage, SimStage list_sta
   return true;
 }
 
-// ---- Viscosity -------------------------------------------------------------------------------------------------------
+// ---- After the pressure -----------------------------------------------------------------------------------------------
 
-static void velocity_to_second_kernel(int32_t begin, int32_t end, const void *context) {
-  const SimParticles *p = context;
-  for (int32_t i = begin; i < end; i++)
-    for (int k = 0; k < 4; k++) p->second[4 * (size_t)i + k] = k < 3 ? p->now.next_velocity[k][i] : 0;
-}
-
-void sim_step_viscosity(const SimStep *step) {
-  SimParticles *p = step->particles;
-  if (!(step->viscosity_share > 0 || step->viscosity_diffusion > 0)) return;
-  sim_parallel_for(step->threads, p->count, velocity_to_second_kernel, p);
-  sim_particles_pad(p, p->second);
-  sim_parallel_for(step->threads, p->count, step->wide->viscosity, step);
+void sim_step_finish(SimWorld *world, const SimStep *step, double *since) {
+  sim_step_vorticity(step);
+  sim_step_lap(world, SIM_STAGE_vorticity, since);
+  sim_step_viscosity(step);
+  sim_step_friction(step);
+  sim_step_lap(world, SIM_STAGE_viscosity, since);
+  sim_step_mix(step);
+  sim_step_lap(world, SIM_STAGE_mix, since);
 }
 
 // ---- Check and commit ------------------------------------------------------------------------------------------------

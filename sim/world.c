@@ -136,7 +136,7 @@ static bool start(SimWorld *world, SimError *error) {
   world->next_id = world->start_count = 0;
   memcpy(world->gravity, world->def.gravity, sizeof world->gravity);
   world->push_count = 0;
-  world->time = world->last_dt = 0;
+  world->time = world->last_dt = world->sound = 0;
   world->advances = 0;
   world->settled = world->failed = false;
   world->counts = (SimCounts){0};
@@ -176,6 +176,7 @@ SimWorld *sim_world_create(const SimWorldDef *def, SimError *error) {
     sim_world_destroy(world);
     return NULL;
   }
+  world->particles.with_work = def->solver == SIM_SOLVER_SPH || def->surface_tension > 0 || def->vorticity > 0;
   world->boundary.container = def->container;
   world->boundary.friction = def->container_friction;
   world->boundary.clearance = def->particle_radius;

@@ -23,6 +23,8 @@ struct SimWorld {
   int32_t threads;
   const SimWide *wide;
   const SimMethod *method;
+  double sound;                ///< m/s, speed of sound of sph in the last substep; 0: none yet
+  double moved;                ///< m, the most that a particle can have moved since the lists were built; only sph asks
   double last_dt;              ///< s, of the last substep; 0: none yet
 
   SimCubic cubic;

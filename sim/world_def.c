@@ -63,6 +63,10 @@ static bool check_numbers(const SimWorldDef *def, SimError *error) {
          in_range("colour_diffusion", def->colour_diffusion, 0, 10, error) &&
          in_range("relaxation", def->relaxation, 1e-3f, 10, error) &&
          in_range("tensile", def->tensile, 0, 0.1f, error) && in_range("jitter", def->jitter, 0, 0.5f, error) &&
+         in_range("kinematic_viscosity", def->kinematic_viscosity, 0, 10, error) &&
+         in_range("surface_tension", def->surface_tension, 0, 10, error) &&
+         in_range("vorticity", def->vorticity, 0, 1, error) &&
+         in_range("colour_diffusion", def->colour_diffusion, 0, 10, error) &&
          in_range("container_friction", def->container_friction, 0, 1, error) &&
          finite_vector("gravity", def->gravity, 1e4f, error);
 }

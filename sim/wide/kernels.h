@@ -11,6 +11,12 @@ void WIDE(sim_pbf_inherit)(int32_t begin, int32_t end, const void *context);
 void WIDE(sim_pbf_prepare)(int32_t begin, int32_t end, const void *context);
 void WIDE(sim_pbf_density)(int32_t begin, int32_t end, const void *context);
 void WIDE(sim_pbf_correct)(int32_t begin, int32_t end, const void *context, double *partial);
-void WIDE(sim_viscosity)(int32_t begin, int32_t end, const void *context);
+void WIDE(sim_sph_density)(int32_t begin, int32_t end, const void *context);
+void WIDE(sim_sph_force)(int32_t begin, int32_t end, const void *context);
+void WIDE(sim_diffuse)(int32_t begin, int32_t end, const void *context);
+void WIDE(sim_tension_normal)(int32_t begin, int32_t end, const void *context);
+void WIDE(sim_tension_force)(int32_t begin, int32_t end, const void *context);
+void WIDE(sim_vorticity_curl)(int32_t begin, int32_t end, const void *context);
+void WIDE(sim_vorticity_confine)(int32_t begin, int32_t end, const void *context);
 
 #endif

@@ -9,5 +9,11 @@ const SimWide WIDE(sim_wide) = {
     .pbf_prepare = WIDE(sim_pbf_prepare),
     .pbf_density = WIDE(sim_pbf_density),
     .pbf_correct = WIDE(sim_pbf_correct),
-    .viscosity = WIDE(sim_viscosity),
+    .sph_density = WIDE(sim_sph_density),
+    .sph_force = WIDE(sim_sph_force),
+    .diffuse = WIDE(sim_diffuse),
+    .tension_normal = WIDE(sim_tension_normal),
+    .tension_force = WIDE(sim_tension_force),
+    .vorticity_curl = WIDE(sim_vorticity_curl),
+    .vorticity_confine = WIDE(sim_vorticity_confine),
 };

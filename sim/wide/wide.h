@@ -17,7 +17,8 @@ typedef struct SimWide {
   // The kernels of the solvers: SimStep, see solver.h.
   SimKernel *pbf_inherit, *pbf_prepare, *pbf_density;
   SimReduceKernel *pbf_correct;
-  SimKernel *viscosity;
+  SimKernel *sph_density, *sph_force;
+  SimKernel *diffuse, *tension_normal, *tension_force, *vorticity_curl, *vorticity_confine;
 } SimWide;
 
 /// The widest one that this processor has; always the same. `sim_wide_named` finds another one that works here (NULL:

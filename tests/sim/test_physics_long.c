@@ -3,12 +3,12 @@
 
 // Lattice at rest, after 3 s: mean density error ≤ 1 %, largest ≤ 5 % away from the surface, level within one spacing;
 // after 5 s: kinetic energy per mass below 10⁻⁴ g H.
-static void still_pool(void **state) {
-  (void)state;
+static void still_pool(SimSolver solver) {
   SimBlockDef block = {{0, 0, 0}, {1.4f, 0.42f, 0.7f}, {0, 0, 0}, {0, 0, 0}};
   SimWorldDef def = sim_default_world_def();
   def.container = (SimContainer){{0, 0, 0}, {1.4f, 0.8f, 0.7f}};
   def.block_count = 1;
+  def.solver = solver;
   def.blocks = &block;
   SimWorld *world = test_create(&def);
   SimFrameBuffer *buffer = sim_frame_buffer_create();
@@ -31,6 +31,16 @@ static void still_pool(void **state) {
   assert_true(per_mass < 1e-4 * 9.81 * 0.42);
   sim_frame_buffer_destroy(buffer);
   sim_world_destroy(world);
+}
+
+static void still_pool_of_pbf(void **state) {
+  (void)state;
+  still_pool(SIM_SOLVER_PBF);
+}
+
+static void still_pool_of_sph(void **state) {
+  (void)state;
+  still_pool(SIM_SOLVER_SPH);
 }
 
 // About 20,000 particles, container 3 × 1.6 × 1 m. Inside in every frame, energy bound, Ritter's bound, and rest.
@@ -63,6 +73,6 @@ static void default_dam_break(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(still_pool), cmocka_unit_test(default_dam_break)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(still_pool_of_pbf), cmocka_unit_test(still_pool_of_sph), cmocka_unit_test(default_dam_break)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,103 @@
+// The two sweeps of a substep of smoothed particle hydrodynamics: see solver_sph.h for the method.
+#include "sim/solver.h"
+#include "sim/wide/kernels.h"
+#include "sim/wide/spline.h"
+#include "sim/wide/walls.h"
+
+/// Sums over the neighbours of the particles of one chunk.
+typedef struct Sums {
+  SimF density, rate, gradient[3];
+} Sums;
+
+// Σ W, Σ (v_i − v_j)·∇W and Σ ∇W; positions in `first`, velocities in `work`.
+static inline Sums sum_density(const SimStep *step, const SimF own[4], const SimF v[4], const uint32_t *index,
+                               uint32_t slots) {
+  const Spline s = spline_make(&step->cubic);
+  Sums sums = {s.zero, s.zero, {s.zero, s.zero, s.zero}};
+  for (uint32_t k = 0; k < slots; k++, index += SIM_CHUNK) {
+    SimF other[4], u[4], w, over_r;
+    sim_gather4(step->particles->first, index, other);
+    sim_gather4(step->particles->work, index, u);
+    SimF dx = own[0] - other[0], dy = own[1] - other[1], dz = own[2] - other[2];
+    spline(&s, dx * dx + dy * dy + dz * dz, &w, &over_r);
+    sums.density = sums.density + w;
+    sums.rate = sums.rate + over_r * ((v[0] - u[0]) * dx + (v[1] - u[1]) * dy + (v[2] - u[2]) * dz);
+    sums.gradient[0] = sums.gradient[0] + over_r * dx;
+    sums.gradient[1] = sums.gradient[1] + over_r * dy;
+    sums.gradient[2] = sums.gradient[2] + over_r * dz;
+  }
+  return sums;
+}
+
+// p/(ρ0 ρ²), m²/s², of a density as a share of ρ0 and its rate: what the force sums up.
+static inline SimF pressure(const SimStep *step, SimF density, SimF rate) {
+  SimF zero = sim_f(0), one = sim_f(1), excess = density - one;
+  // Full from the rest density on, nothing at 1 % below.
+  SimF near = sim_max(sim_min(one + sim_f(100) * excess, one), zero);
+  SimF p = sim_f(step->stiffness) * sim_max(excess, zero) + sim_f(step->bulk) * rate * near;
+  return sim_max(p, zero) / (density * density);
+}
+
+void WIDE(sim_sph_density)(int32_t begin, int32_t end, const void *context) {
+  const SimStep *step = context;
+  const SimNeighbours *lists = step->neighbours;
+  SimParticles *p = step->particles;
+  const SimCubic *cubic = &step->cubic;
+  SimF value = sim_f(2 * cubic->value_scale), slope = sim_f(6 * cubic->gradient_scale);
+  for (int32_t i = begin; i < end; i += SIM_LANES) {
+    const int32_t chunk = i / SIM_CHUNK;
+    SimF own[4], v[4], solid[4];
+    sim_load4(p->first + 4 * (size_t)i, own);
+    sim_load4(p->work + 4 * (size_t)i, v);
+    WIDE(sim_wall_solid)(step, i, own, solid);
+    Sums sums = sum_density(step, own, v, lists->index + (size_t)lists->start[chunk] * SIM_CHUNK + i % SIM_CHUNK,
+                            lists->length[chunk]);
+    SimF density = sim_f(cubic->value_scale) + solid[3] + value * sums.density, rate = slope * sums.rate;
+    for (int k = 0; k < 3; k++) rate = rate + solid[k] * v[k];
+    sim_store(p->density + i, density);
+    sim_store4(p->second + 4 * (size_t)i, own[0], own[1], own[2], pressure(step, density, rate));
+  }
+}
+
+// Tell the floating bodies at these particles what they did to them: they were moved by −dt² κ P ∇f.
+static void note_reactions(const SimStep *step, int32_t i, SimF answer) {
+  const SimParticles *p = step->particles;
+  float lane[SIM_LANES];
+  sim_store(lane, answer);
+  for (int32_t k = 0; k < SIM_LANES && i + k < p->count; k++) {
+    const float *place = p->first + 4 * (size_t)(i + k);
+    sim_reaction_corrected(step->reaction, i + k, lane[k], -1, 1, place, place);
+  }
+}
+
+// dv_i/dt = −Σ_j V (P_i + P_j) ∇W − κ P_i ∇f; positions and P = p/(ρ0 ρ²) in `second`.
+void WIDE(sim_sph_force)(int32_t begin, int32_t end, const void *context) {
+  const SimStep *step = context;
+  const SimNeighbours *lists = step->neighbours;
+  SimParticles *p = step->particles;
+  const Spline s = spline_make(&step->cubic);
+  SimF slope = sim_f(6 * step->cubic.gradient_scale), dt = sim_f(step->dt), wall = sim_f(step->wall_answer);
+  for (int32_t i = begin; i < end; i += SIM_LANES) {
+    const int32_t chunk = i / SIM_CHUNK;
+    const uint32_t *index = lists->index + (size_t)lists->start[chunk] * SIM_CHUNK + i % SIM_CHUNK;
+    SimF own[4], sum[3] = {s.zero, s.zero, s.zero}, solid[4] = {s.zero, s.zero, s.zero, s.zero};
+    sim_load4(p->second + 4 * (size_t)i, own);
+    for (uint32_t k = 0; k < lists->length[chunk]; k++, index += SIM_CHUNK) {
+      SimF other[4], w, over_r;
+      sim_gather4(p->second, index, other);
+      SimF dx = own[0] - other[0], dy = own[1] - other[1], dz = own[2] - other[2];
+      spline(&s, dx * dx + dy * dy + dz * dz, &w, &over_r);
+      SimF factor = (own[3] + other[3]) * over_r;
+      sum[0] = sum[0] + factor * dx;
+      sum[1] = sum[1] + factor * dy;
+      sum[2] = sum[2] + factor * dz;
+    }
+    if (p->near[chunk]) sim_load4(p->solid + 4 * (size_t)i, solid);
+    for (int k = 0; k < 3; k++) {
+      float *v = p->now.next_velocity[k] + i;
+      sim_store(v, sim_load(v) - dt * (slope * sum[k] + wall * own[3] * solid[k]));
+    }
+    sim_store(p->now.pressure + i, s.zero - own[3]);
+    if (step->reaction && p->near[chunk] & SIM_NEAR_BODY) note_reactions(step, i, s.zero - dt * dt * wall * own[3]);
+  }
+}
