@@ -6,7 +6,7 @@
 
 /// Each item of the kernel does SIM_FMA_ROUNDS multiply-adds in each of SIM_FMA_CHAINS × *width lanes.
 #define SIM_FMA_ROUNDS 65536
-#define SIM_FMA_CHAINS 24
+#define SIM_FMA_CHAINS 12
 
 typedef struct SimFmaContext {
   float *result;  ///< (items), so that the work cannot be left out

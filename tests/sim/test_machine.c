@@ -19,7 +19,7 @@ static void rates_are_plausible(void **state) {
   assert_int_equal(sim_bytes_in_use(), 0);
 }
 
-// The kernel really iterates x ← 0.999 x + (0.001 + 10⁻⁶ item) in every lane: the limit is 1 + 10⁻³ item, 24 times.
+// The kernel really iterates x ← 0.999 x + (0.001 + 10⁻⁶ item) in every lane: the limit is 1 + 10⁻³ item, in every chain.
 static void the_kernel_does_its_work(void **state) {
   (void)state;
   static const char *const names[4] = {"avx512", "avx2", "sse2", "scalar"};
