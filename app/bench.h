@@ -9,10 +9,10 @@
 #include "app/scene.h"
 
 enum {
-  BENCH_WARM_UP = 5,  ///< frames that are run first and not counted
-  BENCH_PASSES = 64,  ///< passes of the renderer
+  BENCH_WARM_UP = 5, ///< frames that are run first and not counted
+  BENCH_PASSES = 64, ///< passes of the renderer
   BENCH_ROWS = SIM_STAGE_COUNT + 2 * BENCH_PASSES + 2,
-  BENCH_RUNS = 9      ///< numbers of threads: 1, 2, 4 … 256
+  BENCH_RUNS = 9 ///< numbers of threads: 1, 2, 4 … 256
 };
 
 /// One number in every counted frame.
@@ -24,9 +24,9 @@ typedef struct BenchSeries {
 /// One line of the table: the time of one stage or pass.
 typedef struct BenchRow {
   char group[16], name[48];
-  BenchSeries milliseconds;  ///< a frame
-  BenchSeries each;          ///< ns per particle, and substep if it is a stage of the step; none: not of the simulator
-  BenchSeries pair;          ///< ns per neighbour pair (i, j), i ≠ j, and substep likewise
+  BenchSeries milliseconds; ///< a frame
+  BenchSeries each;         ///< ns per particle, and substep if it is a stage of the step; none: not of the simulator
+  BenchSeries pair;         ///< ns per neighbour pair (i, j), i ≠ j, and substep likewise
 } BenchRow;
 
 /// The world alone on some number of threads.

@@ -19,10 +19,10 @@ static BenchRow *row_named(Bench *bench, const char *group, const char *name) {
 
 /// How near the two sweeps of a density iteration come to what the machine can do.
 typedef struct Limits {
-  bool known;            ///< pbf only: other methods sweep otherwise
-  double sweeps;         ///< of each kind in a substep
-  double multiply_adds;  ///< a second
-  double bytes;          ///< a second
+  bool known;           ///< pbf only: other methods sweep otherwise
+  double sweeps;        ///< of each kind in a substep
+  double multiply_adds; ///< a second
+  double bytes;         ///< a second
 } Limits;
 
 static Limits limits_of(Bench *bench) {
@@ -66,16 +66,18 @@ static void print_scaling(const Bench *bench) {
 static void print_limits(Bench *bench) {
   const SimMachine *machine = &bench->machine;
   Limits limits = limits_of(bench);
-  printf("\nthis machine at best (%s): %.1f thousand million multiply-adds a second, copies %.1f GB/s (read and written)\n",
+  printf("\nthis machine at best (%s): %.1f thousand million multiply-adds a second, copies %.1f GB/s (read and "
+         "written)\n",
          machine->instruction_set, machine->fma_per_second * 1e-9, machine->copy_per_second * 1e-9);
   if (!limits.known) return;
-  printf("density and correction, %.0f sweeps of each a substep:\n"
-         "  %.1f thousand million useful multiply-adds a second, %.0f %% of that (counting %d a pair in a density sweep, "
-         "%d in a correction)\n"
-         "  %.1f GB/s streamed, %.0f %% of the copy's (counting %d bytes a pair and %d a particle in each sweep)\n",
-         limits.sweeps, limits.multiply_adds * 1e-9, 100 * per(limits.multiply_adds, machine->fma_per_second),
-         DENSITY_MULTIPLY_ADDS, CORRECT_MULTIPLY_ADDS, limits.bytes * 1e-9,
-         100 * per(limits.bytes, machine->copy_per_second), BYTES_A_PAIR, BYTES_A_PARTICLE);
+  printf(
+      "density and correction, %.0f sweeps of each a substep:\n"
+      "  %.1f thousand million useful multiply-adds a second, %.0f %% of that (counting %d a pair in a density sweep, "
+      "%d in a correction)\n"
+      "  %.1f GB/s streamed, %.0f %% of the copy's (counting %d bytes a pair and %d a particle in each sweep)\n",
+      limits.sweeps, limits.multiply_adds * 1e-9, 100 * per(limits.multiply_adds, machine->fma_per_second),
+      DENSITY_MULTIPLY_ADDS, CORRECT_MULTIPLY_ADDS, limits.bytes * 1e-9,
+      100 * per(limits.bytes, machine->copy_per_second), BYTES_A_PAIR, BYTES_A_PARTICLE);
 }
 
 void bench_print_table(Bench *bench, const SimCounts *counts) {
@@ -90,9 +92,9 @@ void bench_print_table(Bench *bench, const SimCounts *counts) {
   if (bench->particle_steps > 0)
     printf("\nsimulator: %.3f us per particle and substep, %.2f ns per neighbour pair, %.1f neighbours per particle, "
            "%.0f bytes per particle (%.0f with a frame)\n",
-           bench->simulated_ms * 1e3 / (double)bench->particle_steps, per(bench->simulated_ms * 1e6, (double)bench->pairs),
-           (double)bench->pairs / (double)bench->particle_steps, per((double)bench->world_bytes, counts->particles),
-           per((double)sim_bytes_in_use(), counts->particles));
+           bench->simulated_ms * 1e3 / (double)bench->particle_steps,
+           per(bench->simulated_ms * 1e6, (double)bench->pairs), (double)bench->pairs / (double)bench->particle_steps,
+           per((double)bench->world_bytes, counts->particles), per((double)sim_bytes_in_use(), counts->particles));
   print_scaling(bench);
   print_limits(bench);
 }
@@ -101,8 +103,8 @@ void bench_print_table(Bench *bench, const SimCounts *counts) {
 
 static void print_json_row(BenchRow *row, bool last) {
   double middle = bench_median(&row->milliseconds); // sorts
-  printf("  {\"group\": \"%s\", \"name\": \"%s\", \"median_ms\": %.6f, \"least_ms\": %.6f", row->group, row->name, middle,
-         row->milliseconds.value[0]);
+  printf("  {\"group\": \"%s\", \"name\": \"%s\", \"median_ms\": %.6f, \"least_ms\": %.6f", row->group, row->name,
+         middle, row->milliseconds.value[0]);
   if (row->each.count > 0) printf(", \"ns_per_particle\": %.4f", bench_median(&row->each));
   if (row->pair.count > 0) printf(", \"ns_per_pair\": %.5f", bench_median(&row->pair));
   printf("}%s\n", last ? "" : ",");
@@ -113,10 +115,11 @@ static void print_json_limits(Bench *bench) {
   printf(" \"machine\": {\"instruction_set\": \"%s\", \"fma_per_second\": %.6g, \"copy_bytes_per_second\": %.6g}",
          bench->machine.instruction_set, bench->machine.fma_per_second, bench->machine.copy_per_second);
   if (limits.known)
-    printf(",\n \"density_and_correct\": {\"sweeps\": %.0f, \"multiply_adds_per_pair\": [%d, %d], \"bytes_per_pair\": %d, "
-           "\"bytes_per_particle\": %d, \"multiply_adds_per_second\": %.6g, \"bytes_per_second\": %.6g}",
-           limits.sweeps, DENSITY_MULTIPLY_ADDS, CORRECT_MULTIPLY_ADDS, BYTES_A_PAIR, BYTES_A_PARTICLE,
-           limits.multiply_adds, limits.bytes);
+    printf(
+        ",\n \"density_and_correct\": {\"sweeps\": %.0f, \"multiply_adds_per_pair\": [%d, %d], \"bytes_per_pair\": %d, "
+        "\"bytes_per_particle\": %d, \"multiply_adds_per_second\": %.6g, \"bytes_per_second\": %.6g}",
+        limits.sweeps, DENSITY_MULTIPLY_ADDS, CORRECT_MULTIPLY_ADDS, BYTES_A_PAIR, BYTES_A_PARTICLE,
+        limits.multiply_adds, limits.bytes);
   printf("}\n");
 }
 

@@ -59,13 +59,15 @@ static void add_sample(Bench *bench, const char *group, const char *name, double
 // A stage of the step works on every particle in each substep, a stage of the frame once.
 static void add_stage(Bench *bench, SimStage stage, const SimProfile *profile, int32_t count) {
   bool frame = stage >= SIM_STAGE_frame;
-  bool visits_pairs = stage == SIM_STAGE_neighbours || stage == SIM_STAGE_warm_start || stage == SIM_STAGE_density ||
-                      stage == SIM_STAGE_correct || stage == SIM_STAGE_viscosity || stage == SIM_STAGE_classify ||
-                      stage == SIM_STAGE_flags;
+  static const bool visits_pairs[SIM_STAGE_COUNT] = {
+      [SIM_STAGE_neighbours] = true, [SIM_STAGE_tension] = true, [SIM_STAGE_warm_start] = true,
+      [SIM_STAGE_density] = true,    [SIM_STAGE_correct] = true, [SIM_STAGE_vorticity] = true,
+      [SIM_STAGE_viscosity] = true,  [SIM_STAGE_mix] = true,     [SIM_STAGE_classify] = true,
+      [SIM_STAGE_flags] = true};
   double times = frame ? 1 : (double)profile->substeps;
   double pairs = profile->substeps ? (double)profile->neighbour_pairs / (double)profile->substeps : 0;
   double ms = profile->milliseconds[stage];
-  add_sample(bench, "sim", sim_stage_name(stage), ms, times * count, visits_pairs && ms > 0 ? times * pairs : 0);
+  add_sample(bench, "sim", sim_stage_name(stage), ms, times * count, visits_pairs[stage] && ms > 0 ? times * pairs : 0);
 }
 
 // ---- Frames ----------------------------------------------------------------------------------------------------------

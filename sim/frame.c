@@ -33,11 +33,11 @@ void sim_frame_buffer_destroy(SimFrameBuffer *buffer) {
   if (!buffer) return;
   sim_grid_free(&buffer->sort);
   sim_neighbours_free(&buffer->lists);
-  void *blocks[] = {buffer->axis[0],      buffer->axis[1],        buffer->axis[2],      buffer->four,
-                    buffer->cell_start,   buffer->id,             buffer->position,     buffer->velocity,
-                    buffer->density,      buffer->colour,         buffer->radius,       buffer->particle_class,
-                    buffer->near_surface, buffer->exposed,        buffer->smoothed,     buffer->ellipsoid,
-                    buffer->height,       buffer->normal,         buffer->obstacles};
+  void *blocks[] = {buffer->axis[0],      buffer->axis[1], buffer->axis[2],  buffer->four,
+                    buffer->cell_start,   buffer->id,      buffer->position, buffer->velocity,
+                    buffer->density,      buffer->colour,  buffer->radius,   buffer->particle_class,
+                    buffer->near_surface, buffer->exposed, buffer->smoothed, buffer->ellipsoid,
+                    buffer->height,       buffer->normal,  buffer->obstacles};
   for (size_t k = 0; k < sizeof blocks / sizeof *blocks; k++) sim_release(blocks[k]);
   sim_release(buffer);
 }
@@ -227,8 +227,7 @@ static void split_kernel(int32_t begin, int32_t end, const void *context) {
   const SimFrameBuffer *buffer = context;
   for (int64_t i = begin; i < end; i++) {
     buffer->four[4 * i + 3] = 0;
-    for (int k = 0; k < 3; k++)
-      buffer->four[4 * i + k] = buffer->axis[k][i] = buffer->position[3 * i + k];
+    for (int k = 0; k < 3; k++) buffer->four[4 * i + k] = buffer->axis[k][i] = buffer->position[3 * i + k];
   }
 }
 
@@ -272,7 +271,8 @@ const SimFrame *sim_world_frame(SimWorld *world, unsigned needs, SimFrameBuffer 
   if (!sim_world_settle(world, error)) return NULL;
   double since = sim_milliseconds();
   int32_t count = world->particles.count;
-  if (!reserve_particles(buffer, count, world->particles.coloured, false) || !reserve_surface(buffer, count, needs, false))
+  if (!reserve_particles(buffer, count, world->particles.coloured, false) ||
+      !reserve_surface(buffer, count, needs, false))
     return sim_fail(error, "out of memory"), NULL;
   SimFrame *frame = &buffer->frame;
   buffer->threads = world->threads;

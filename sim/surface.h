@@ -18,11 +18,11 @@
 typedef struct SimSurface {
   const SimWide *wide;
   int32_t count, threads;
-  float spacing;             ///< m, of the particles at rest
-  const float *position[3];  ///< m, x, y and z, each (count), sorted by the grid; readable a SIM_CHUNK further
-  const float *four;         ///< m, (count, 4): the same side by side, infinitely far ones behind the last (particles.h)
-  const SimGrid *grid;       ///< cells of at least SIM_SURFACE_REACH spacings
-  const SimNeighbours *lists; ///< of exactly SIM_SURFACE_REACH spacings
+  float spacing;            ///< m, of the particles at rest
+  const float *position[3]; ///< m, x, y and z, each (count), sorted by the grid; readable a SIM_CHUNK further
+  const float *four;        ///< m, (count, 4): the same side by side, infinitely far ones behind the last (particles.h)
+  const SimGrid *grid;      ///< cells of at least SIM_SURFACE_REACH spacings
+  const SimNeighbours *lists;         ///< of exactly SIM_SURFACE_REACH spacings
   float bounds_min[3], bounds_max[3]; ///< m, around the positions
 } SimSurface;
 
@@ -31,12 +31,12 @@ typedef struct SimSurface {
 
 /// What the sweep writes; an array that is NULL is left out. All have room for whole chunks and one chunk more.
 typedef struct SimSurfaceSums {
-  float *density;            ///< (count): share of the rest density, from particles alone (no walls)
-  uint8_t *particle_class;   ///< (count): SIM_SPLASH or SIM_AGGREGATED by that density …
-  bool class_given;          ///< … unless it is there already
-  float *smoothed;           ///< m, (count, 3): smoothed centres
-  float *covariance;         ///< m², (chunks, 6, SIM_CHUNK): xx, yy, zz, xy, xz, yz; all zero where the shape is a sphere
-  uint8_t *exposed;          ///< (count): 1 where the particle lies at the outside of the water; 0 in the room behind
+  float *density;          ///< (count): share of the rest density, from particles alone (no walls)
+  uint8_t *particle_class; ///< (count): SIM_SPLASH or SIM_AGGREGATED by that density …
+  bool class_given;        ///< … unless it is there already
+  float *smoothed;         ///< m, (count, 3): smoothed centres
+  float *covariance; ///< m², (chunks, 6, SIM_CHUNK): xx, yy, zz, xy, xz, yz; all zero where the shape is a sphere
+  uint8_t *exposed;  ///< (count): 1 where the particle lies at the outside of the water; 0 in the room behind
 } SimSurfaceSums;
 
 /// One sweep over all neighbours. `smoothed` and `covariance` go together and need classes.
@@ -46,7 +46,7 @@ void sim_surface_sweep(const SimSurface *surface, const SimSurfaceSums *sums);
 typedef struct SimSweepContext {
   const SimSurface *surface;
   SimSurfaceSums sums;
-  SimCubic cubic;            ///< of support SIM_SURFACE_REACH
+  SimCubic cubic; ///< of support SIM_SURFACE_REACH
 } SimSweepContext;
 
 /// Turn covariances into ellipsoids in place: (chunks, 6, SIM_CHUNK) becomes (count, 6), see SimFrame. `radius` is that of

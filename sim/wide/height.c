@@ -19,7 +19,7 @@ typedef struct Column {
   int32_t low[2], high[2]; ///< cells in reach along x and z
   int32_t layer;           ///< cells from here on upwards have been collected
   int32_t count;
-  bool full;               ///< there was no room: the lists are of no use
+  bool full;                                           ///< there was no room: the lists are of no use
   float y[ROOM + SIM_CHUNK], reach2[ROOM + SIM_CHUNK]; ///< m; m², what is left of the radius at the axis
 } Column;
 

@@ -14,7 +14,7 @@
 //
 // Exposed: the gradient of a smoothed colour field, which is 1 at particles and 0 elsewhere, is long at a free surface
 // (Müller, Charypar, Gross, Particle-Based Fluid Simulation for Interactive Applications, 2003, section 3.3). With the
-// kernel (1 − q²)⁴ it is Σ (1 − q²)³ d up to a factor: zero inside a lattice, 1.9 spacings at its face. It also vanishes
+// kernel (1 − q²)⁴ it is Σ (1 − q²)³ d up to a factor: zero inside a lattice, 0.98 spacings at its face. It also vanishes
 // in a thin sheet, on a line and in a heap of particles in one place; they are exposed because the second moment
 // Σ (1 − q²)³ q² is small (a lattice 1.48, its face 1.07, a sheet 0.67, a heap 0). Walls count for nothing: tanks are made of
 // glass. The limits are from experiments with rays, see surface_flags.c.
@@ -83,7 +83,8 @@ static void write_class(const SimSweepContext *c, int32_t i, SimF density, float
 static void write_moments(const SimSweepContext *c, int32_t i, const SimF own[4], const Sums *sums, SimF aggregated) {
   SimF zero = sim_f(0), shaped = sim_select_less(sums->count, sim_f(SPARSE - 0.5f), zero, aggregated);
   SimF inverse = sim_f(1) / sums->weight, mean[3], second[6];
-  float centre[3][SIM_LANES], *covariance = c->sums.covariance + 6 * (size_t)(i / SIM_CHUNK * SIM_CHUNK) + i % SIM_CHUNK;
+  float centre[3][SIM_LANES],
+      *covariance = c->sums.covariance + 6 * (size_t)(i / SIM_CHUNK * SIM_CHUNK) + i % SIM_CHUNK;
   for (int k = 0; k < 3; k++) {
     mean[k] = sums->mean[k] * inverse;
     sim_store(centre[k], own[k] + shaped * sim_f(SMOOTHING) * mean[k]);

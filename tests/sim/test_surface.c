@@ -44,8 +44,10 @@ static double check_ellipsoids(const float (*covariance)[6], int count) {
                    (double)covariance[i][4], (double)covariance[i][5], e, (double)all[6 * i + e], expected[e]);
       }
     }
-    if (first) free(all);
-    else first = all;
+    if (first)
+      free(all);
+    else
+      first = all;
   }
   free(first);
   return worst;
@@ -60,10 +62,10 @@ static void ellipsoids_match_their_twins(void **state) {
     double size = pow(10, 20 * test_random(&seed) - 12), r[3][3];
     for (int i = 0; i < 3; i++)
       for (int k = 0; k < 3; k++) r[i][k] = 2 * test_random(&seed) - 1;
-    if (n % 5 == 1) r[0][1] = r[0][2] = r[1][0] = r[1][2] = r[2][0] = r[2][1] = 0;        // diagonal
+    if (n % 5 == 1) r[0][1] = r[0][2] = r[1][0] = r[1][2] = r[2][0] = r[2][1] = 0;                    // diagonal
     if (n % 5 == 2) r[0][0] = r[1][1], r[0][1] = r[1][0] = r[0][2] = r[1][2] = r[2][0] = r[2][1] = 0; // two equal
-    if (n % 5 == 3) r[0][1] = r[1][1] = r[2][1] = r[0][2] = r[1][2] = r[2][2] = 0;        // rank one: two are zero
-    if (n % 5 == 4)                                                                        // almost a sphere
+    if (n % 5 == 3) r[0][1] = r[1][1] = r[2][1] = r[0][2] = r[1][2] = r[2][2] = 0; // rank one: two are zero
+    if (n % 5 == 4)                                                                // almost a sphere
       for (int i = 0; i < 3; i++)
         for (int k = 0; k < 3; k++) r[i][k] = (i == k) + r[i][k] * pow(10, -n % 9);
     const int row[6] = {0, 1, 2, 0, 0, 1}, column[6] = {0, 1, 2, 1, 2, 2};
@@ -81,7 +83,7 @@ static void ellipsoids_match_their_twins(void **state) {
 static void ellipsoids_of_degenerate_covariances(void **state) {
   (void)state;
   const float cases[8][6] = {
-      {0, 0, 0, 0, 0, 0}, {1, 1, 1, 0, 0, 0},      {1, 1, 1, 1e-7f, 0, 0},         {1, 2, 2, 0, 0, 0},
+      {0, 0, 0, 0, 0, 0}, {1, 1, 1, 0, 0, 0},      {1, 1, 1, 1e-7f, 0, 0},        {1, 2, 2, 0, 0, 0},
       {2, 2, 1, 0, 0, 0}, {1e-30f, 0, 0, 0, 0, 0}, {1e20f, 1e20f, 1, 0, 0, 1e9f}, {1, 1, 1, 1, 1, 1}};
   for (int count = 0; count <= 8; count++) check_ellipsoids(cases, count);
 }
