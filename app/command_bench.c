@@ -2,84 +2,100 @@
 //
 // Warm-up frames are run first and not counted; then every frame's times are kept and the least and the median are
 // shown: "draw" is the GPU's time (with a software renderer, the processor's), "submit" the calling thread's.
-// Simulation and drawing run one after the other here, so that neither disturbs the other's figures.
+// Simulation and drawing run one after the other here, so that neither disturbs the other's figures. Then the world is
+// run alone on 1, 2, 4 … threads, and what the machine can do at best is measured.
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
+#include "app/bench.h"
 #include "app/commands.h"
-#include "app/context.h"
 #include "app/events.h"
-#include "app/scene.h"
 
-enum { WARM_UP_FRAMES = 5, DEFAULT_FRAMES = 60, MAX_PASSES = 64, MAX_ROWS = SIM_STAGE_COUNT + 2 * MAX_PASSES + 2 };
+enum { DEFAULT_FRAMES = 60 };
 
-/// One line of the table: the milliseconds of one stage or pass in every counted frame.
-typedef struct Row {
-  char group[16], name[48];
-  double *samples; // ms, (frames)
-  int count;
-} Row;
-
-typedef struct Bench {
-  Scene scene;
-  SimWorld *world;
-  SimFrameBuffer *buffer;
-  Context *context; // NULL: no OpenGL here, only the simulator is timed
-  Render *render;
-  RenderSettings settings;
-  RenderView view;
-  double frame_seconds;
-  int frames;
-  Row rows[MAX_ROWS];
-  int row_count;
-  // Sums over the counted frames.
-  double simulated_ms;
-  int64_t substeps, particle_steps, pairs;
-} Bench;
-
-static double now_ms(void) {
+double bench_now_ms(void) {
   struct timespec t;
   clock_gettime(CLOCK_MONOTONIC, &t);
   return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
 }
 
-static void add_sample(Bench *bench, const char *group, const char *name, double ms) {
-  Row *row = NULL;
+static int compare_doubles(const void *a, const void *b) {
+  double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+double bench_median(BenchSeries *series) {
+  int n = series->count;
+  if (n == 0) return 0;
+  qsort(series->value, (size_t)n, sizeof *series->value, compare_doubles);
+  return n % 2 ? series->value[n / 2] : (series->value[n / 2 - 1] + series->value[n / 2]) / 2;
+}
+
+// ---- Samples ---------------------------------------------------------------------------------------------------------
+
+static void add_value(const Bench *bench, BenchSeries *series, double value) {
+  if (!series->value) series->value = malloc((size_t)bench->frames * sizeof *series->value);
+  if (series->value && series->count < bench->frames) series->value[series->count++] = value;
+}
+
+// `particles` and `pairs` are what the time stands for; 0: nothing that could be counted.
+static void add_sample(Bench *bench, const char *group, const char *name, double ms, double particles, double pairs) {
+  BenchRow *row = NULL;
   for (int i = 0; i < bench->row_count && !row; i++)
     if (!strcmp(bench->rows[i].group, group) && !strcmp(bench->rows[i].name, name)) row = &bench->rows[i];
   if (!row) {
-    if (bench->row_count == MAX_ROWS) return;
-    row = &bench->rows[bench->row_count];
-    row->samples = malloc((size_t)bench->frames * sizeof *row->samples);
-    if (!row->samples) return;
-    bench->row_count++;
+    if (bench->row_count == BENCH_ROWS) return;
+    row = &bench->rows[bench->row_count++];
     snprintf(row->group, sizeof row->group, "%s", group);
     snprintf(row->name, sizeof row->name, "%s", name);
   }
-  if (row->count < bench->frames) row->samples[row->count++] = ms;
+  add_value(bench, &row->milliseconds, ms);
+  if (particles > 0) add_value(bench, &row->each, ms * 1e6 / particles);
+  if (pairs > 0) add_value(bench, &row->pair, ms * 1e6 / pairs);
+}
+
+// A stage of the step works on every particle in each substep, a stage of the frame once.
+static void add_stage(Bench *bench, SimStage stage, const SimProfile *profile, int32_t count) {
+  bool frame = stage >= SIM_STAGE_frame;
+  static const bool visits_pairs[SIM_STAGE_COUNT] = {
+      [SIM_STAGE_neighbours] = true, [SIM_STAGE_tension] = true, [SIM_STAGE_warm_start] = true,
+      [SIM_STAGE_density] = true,    [SIM_STAGE_correct] = true, [SIM_STAGE_vorticity] = true,
+      [SIM_STAGE_viscosity] = true,  [SIM_STAGE_mix] = true,     [SIM_STAGE_classify] = true,
+      [SIM_STAGE_flags] = true};
+  double times = frame ? 1 : (double)profile->substeps;
+  double pairs = profile->substeps ? (double)profile->neighbour_pairs / (double)profile->substeps : 0;
+  double ms = profile->milliseconds[stage];
+  add_sample(bench, "sim", sim_stage_name(stage), ms, times * count, visits_pairs[stage] && ms > 0 ? times * pairs : 0);
+}
+
+// ---- Frames ----------------------------------------------------------------------------------------------------------
+
+bool bench_advance(Bench *bench, SimWorld *world, int index, AppError *error) {
+  SimError sim_error;
+  double time = index * bench->frame_seconds;
+  if (!events_apply(&bench->scene, time, bench->frame_seconds, world, &bench->settings, &bench->view, error))
+    return false;
+  return sim_world_advance(world, bench->frame_seconds, &sim_error) ||
+         app_fail(error, APP_FAILED, "%s", sim_error.message);
 }
 
 static bool simulate_frame(Bench *bench, int index, bool counted, const SimFrame **frame, AppError *error) {
   SimError sim_error;
-  double time = index * bench->frame_seconds;
   sim_world_clear_profile(bench->world);
-  if (!events_apply(&bench->scene, time, bench->frame_seconds, bench->world, &bench->settings, &bench->view, error))
-    return false;
-  double start = now_ms();
-  if (!sim_world_advance(bench->world, bench->frame_seconds, &sim_error))
-    return app_fail(error, APP_FAILED, "%s", sim_error.message);
+  double start = bench_now_ms();
+  if (!bench_advance(bench, bench->world, index, error)) return false;
   unsigned needs = bench->render ? render_style_needs(bench->settings.style) : SIM_NEED_ALL;
   *frame = sim_world_frame(bench->world, needs, bench->buffer, &sim_error);
   if (!*frame) return app_fail(error, APP_FAILED, "%s", sim_error.message);
-  double elapsed = now_ms() - start;
+  double elapsed = bench_now_ms() - start;
   if (!counted) return true;
 
   const SimProfile *profile = sim_world_profile(bench->world);
-  for (int s = 0; s < SIM_STAGE_COUNT; s++)
-    add_sample(bench, "sim", sim_stage_name((SimStage)s), profile->milliseconds[s]);
-  add_sample(bench, "sim", "total", elapsed);
+  for (int s = 0; s < SIM_STAGE_COUNT; s++) add_stage(bench, (SimStage)s, profile, (*frame)->count);
+  double steps = (double)profile->substeps * (*frame)->count;
+  add_sample(bench, "sim", "total", elapsed, steps, (double)profile->neighbour_pairs);
   bench->simulated_ms += elapsed;
   bench->substeps += profile->substeps;
   bench->particle_steps += profile->substeps * (*frame)->count;
@@ -89,20 +105,22 @@ static bool simulate_frame(Bench *bench, int index, bool counted, const SimFrame
 
 static bool draw_frame(Bench *bench, const SimFrame *frame, bool counted, AppError *error) {
   RenderError render_error;
-  RenderPassTime passes[MAX_PASSES];
-  double start = now_ms();
+  RenderPassTime passes[BENCH_PASSES];
+  double start = bench_now_ms();
   if (!render_draw(bench->render, frame, &bench->view, &bench->settings, &render_error))
     return app_fail(error, APP_FAILED, "%s", render_error.message);
-  int count = render_pass_times(bench->render, passes, MAX_PASSES); // waits for the GPU
-  double elapsed = now_ms() - start;
+  int count = render_pass_times(bench->render, passes, BENCH_PASSES); // waits for the GPU
+  double elapsed = bench_now_ms() - start;
   if (!counted) return true;
-  for (int p = 0; p < count && p < MAX_PASSES; p++)
-    add_sample(bench, "draw", passes[p].name, passes[p].gpu_milliseconds);
-  add_sample(bench, "draw", "total", elapsed);
-  for (int p = 0; p < count && p < MAX_PASSES; p++)
-    add_sample(bench, "submit", passes[p].name, passes[p].cpu_milliseconds);
+  for (int p = 0; p < count && p < BENCH_PASSES; p++)
+    add_sample(bench, "draw", passes[p].name, passes[p].gpu_milliseconds, 0, 0);
+  add_sample(bench, "draw", "total", elapsed, 0, 0);
+  for (int p = 0; p < count && p < BENCH_PASSES; p++)
+    add_sample(bench, "submit", passes[p].name, passes[p].cpu_milliseconds, 0, 0);
   return true;
 }
+
+// ---- The command -----------------------------------------------------------------------------------------------------
 
 static bool open_bench(Bench *bench, const Options *options, AppError *error) {
   if (!scene_load(&bench->scene, options->source, options->sets, options->set_count, error)) return false;
@@ -112,6 +130,7 @@ static bool open_bench(Bench *bench, const Options *options, AppError *error) {
   bench->frame_seconds = 1 / options->fps;
   bench->frames = options->last_frame >= 0 ? options->last_frame - options->first_frame + 1 : DEFAULT_FRAMES;
 
+  bench->threads = options->threads;
   bench->world = scene_world_create(&bench->scene, options->threads, error);
   if (!bench->world) return false;
   SimCounts counts = sim_world_counts(bench->world);
@@ -133,7 +152,11 @@ static bool open_bench(Bench *bench, const Options *options, AppError *error) {
 }
 
 static void close_bench(Bench *bench) {
-  for (int i = 0; i < bench->row_count; i++) free(bench->rows[i].samples);
+  for (int i = 0; i < bench->row_count; i++) {
+    free(bench->rows[i].milliseconds.value);
+    free(bench->rows[i].each.value);
+    free(bench->rows[i].pair.value);
+  }
   render_destroy(bench->render);
   context_destroy(bench->context);
   sim_frame_buffer_destroy(bench->buffer);
@@ -141,66 +164,29 @@ static void close_bench(Bench *bench) {
   scene_free(&bench->scene);
 }
 
-static int compare_doubles(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
-/// Sorts the samples in place.
-static double median(Row *row) {
-  qsort(row->samples, (size_t)row->count, sizeof *row->samples, compare_doubles);
-  return row->count % 2 ? row->samples[row->count / 2]
-                        : (row->samples[row->count / 2 - 1] + row->samples[row->count / 2]) / 2;
-}
-
-static void print_table(Bench *bench, const SimCounts *counts) {
-  printf("%s: %d particles, %d frames of 1/%.0f s, %.1f substeps each\n", bench->scene.path, counts->particles,
-         bench->frames, 1 / bench->frame_seconds, (double)bench->substeps / bench->frames);
-  if (bench->render) printf("style %s on %s\n", bench->settings.style, render_gl_description(bench->render));
-  printf("\n%-6s %-24s %12s %12s\n", "", "", "median ms", "least ms");
-  for (int i = 0; i < bench->row_count; i++) {
-    double middle = median(&bench->rows[i]);
-    printf("%-6s %-24s %12.3f %12.3f\n", bench->rows[i].group, bench->rows[i].name, middle, bench->rows[i].samples[0]);
-  }
-  if (bench->particle_steps > 0)
-    printf("\nsimulator: %.3f us per particle and substep, %.2f ns per neighbour pair, %.1f neighbours per particle, "
-           "%.0f bytes per particle\n",
-           bench->simulated_ms * 1e3 / (double)bench->particle_steps,
-           bench->simulated_ms * 1e6 / (double)(bench->pairs ? bench->pairs : 1),
-           (double)bench->pairs / (double)bench->particle_steps,
-           counts->particles ? (double)sim_bytes_in_use() / counts->particles : 0.0);
-}
-
-static void print_json(Bench *bench, const SimCounts *counts) {
-  printf("{\"particles\": %d, \"frames\": %d, \"substeps\": %lld, \"neighbour_pairs\": %lld, \"bytes\": %zu,\n",
-         counts->particles, bench->frames, (long long)bench->substeps, (long long)bench->pairs, sim_bytes_in_use());
-  printf(" \"microseconds_per_particle_and_substep\": %.6f,\n",
-         bench->particle_steps ? bench->simulated_ms * 1e3 / (double)bench->particle_steps : 0.0);
-  printf(" \"rows\": [\n");
-  for (int i = 0; i < bench->row_count; i++) {
-    double middle = median(&bench->rows[i]);
-    printf("  {\"group\": \"%s\", \"name\": \"%s\", \"median_ms\": %.6f, \"least_ms\": %.6f}%s\n", bench->rows[i].group,
-           bench->rows[i].name, middle, bench->rows[i].samples[0], i + 1 < bench->row_count ? "," : "");
-  }
-  printf(" ]}\n");
+static bool measure_machine(Bench *bench, AppError *error) {
+  SimError sim_error;
+  return sim_measure_machine(bench->threads, &bench->machine, &sim_error) ||
+         app_fail(error, APP_FAILED, "measuring the machine: %s", sim_error.message);
 }
 
 bool command_bench(const Options *options, AppError *error) {
   Bench bench = {0};
   bool ok = open_bench(&bench, options, error);
-  for (int i = 0; ok && i < WARM_UP_FRAMES + bench.frames && !app_interrupted(); i++) {
+  for (int i = 0; ok && i < BENCH_WARM_UP + bench.frames && !app_interrupted(); i++) {
     const SimFrame *frame = NULL;
-    bool counted = i >= WARM_UP_FRAMES;
+    bool counted = i >= BENCH_WARM_UP;
     ok = simulate_frame(&bench, i, counted, &frame, error) &&
          (!bench.render || draw_frame(&bench, frame, counted, error));
   }
+  SimCounts counts = ok ? sim_world_counts(bench.world) : (SimCounts){0};
+  ok = ok && bench_scaling(&bench, error) && measure_machine(&bench, error);
   if (ok && app_interrupted()) ok = app_fail(error, APP_FAILED, "interrupted");
   if (ok) {
-    SimCounts counts = sim_world_counts(bench.world);
     if (options->json)
-      print_json(&bench, &counts);
+      bench_print_json(&bench, &counts);
     else
-      print_table(&bench, &counts);
+      bench_print_table(&bench, &counts);
   }
   close_bench(&bench);
   return ok;

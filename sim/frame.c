@@ -13,13 +13,14 @@
 struct SimFrameBuffer {
   SimFrame frame;
   int32_t threads;
-  SimCellSort sort;    ///< of particle sets
-  float *unsorted[3];  ///< m, positions of a particle set before sorting
-  float *sorted[3];    ///< m, the frame's positions once more, as a structure of arrays
-  int32_t *cell_start; ///< of a world's frame
+  // Of particles whose order or neighbours are not those of a world: see surface_of.
+  SimCellSort sort;
+  SimNeighbours lists;
+  float *axis[3], *four; ///< m, the frame's positions as axes and side by side (particles.h)
+  int32_t *cell_start;   ///< of a world's frame
   uint32_t *id;
   float *position, *velocity, *density, *colour, *radius;
-  uint8_t *particle_class, *near_surface, *work;
+  uint8_t *particle_class, *near_surface, *exposed;
   float *smoothed, *ellipsoid, *height, *normal;
   SimObstacle *obstacles;
 };
@@ -31,36 +32,49 @@ SimFrameBuffer *sim_frame_buffer_create(void) {
 void sim_frame_buffer_destroy(SimFrameBuffer *buffer) {
   if (!buffer) return;
   sim_grid_free(&buffer->sort);
-  for (int k = 0; k < 3; k++) {
-    sim_release(buffer->unsorted[k]);
-    sim_release(buffer->sorted[k]);
-  }
-  void *blocks[] = {buffer->cell_start,   buffer->id,     buffer->position, buffer->velocity,
-                    buffer->density,      buffer->colour, buffer->radius,   buffer->particle_class,
-                    buffer->near_surface, buffer->work,   buffer->smoothed, buffer->ellipsoid,
-                    buffer->height,       buffer->normal, buffer->obstacles};
+  sim_neighbours_free(&buffer->lists);
+  void *blocks[] = {buffer->axis[0],      buffer->axis[1], buffer->axis[2],  buffer->four,
+                    buffer->cell_start,   buffer->id,      buffer->position, buffer->velocity,
+                    buffer->density,      buffer->colour,  buffer->radius,   buffer->particle_class,
+                    buffer->near_surface, buffer->exposed, buffer->smoothed, buffer->ellipsoid,
+                    buffer->height,       buffer->normal,  buffer->obstacles};
   for (size_t k = 0; k < sizeof blocks / sizeof *blocks; k++) sim_release(blocks[k]);
   sim_release(buffer);
 }
 
-static bool reserve_particles(SimFrameBuffer *buffer, int32_t count, unsigned needs) {
-  size_t n = (size_t)count + 1; // never zero, so that an empty frame has arrays too
-  bool ok = sim_reserve((void **)&buffer->id, n, sizeof(uint32_t)) &&
-            sim_reserve((void **)&buffer->position, 3 * n, sizeof(float)) &&
-            sim_reserve((void **)&buffer->velocity, 3 * n, sizeof(float)) &&
-            sim_reserve((void **)&buffer->density, n, sizeof(float)) &&
-            sim_reserve((void **)&buffer->colour, 3 * n, sizeof(float)) &&
-            sim_reserve((void **)&buffer->radius, n, sizeof(float)) &&
-            sim_reserve((void **)&buffer->particle_class, n, 1);
-  for (int k = 0; ok && k < 3; k++)
-    ok = sim_reserve((void **)&buffer->sorted[k], n, sizeof(float)) &&
-         sim_reserve((void **)&buffer->unsorted[k], n, sizeof(float));
-  if (ok && needs & SIM_NEED_SURFACE)
-    ok = sim_reserve((void **)&buffer->near_surface, n, 1) && sim_reserve((void **)&buffer->work, n, 1);
-  if (ok && needs & SIM_NEED_ANISOTROPY)
-    ok = sim_reserve((void **)&buffer->smoothed, 3 * n, sizeof(float)) &&
-         sim_reserve((void **)&buffer->ellipsoid, 6 * n, sizeof(float));
+// Whole chunks and one more, for the kernels in wide floats; so an empty frame has arrays too.
+static size_t padded(int32_t count) {
+  return ((size_t)count + 2 * SIM_CHUNK - 1) / SIM_CHUNK * SIM_CHUNK;
+}
+
+static bool reserve_floats(float **array, size_t count) {
+  return sim_reserve((void **)array, count, sizeof(float));
+}
+
+static bool reserve_particles(SimFrameBuffer *buffer, int32_t count, bool colour, bool radius) {
+  size_t n = padded(count);
+  return sim_reserve((void **)&buffer->id, n, sizeof(uint32_t)) && reserve_floats(&buffer->position, 3 * n) &&
+         reserve_floats(&buffer->velocity, 3 * n) && reserve_floats(&buffer->density, n) &&
+         (!colour || reserve_floats(&buffer->colour, 3 * n)) && (!radius || reserve_floats(&buffer->radius, n));
+}
+
+static bool reserve_order(SimFrameBuffer *buffer, int32_t count) {
+  size_t n = padded(count);
+  bool ok = reserve_floats(&buffer->four, 4 * n);
+  for (int k = 0; ok && k < 3; k++) ok = reserve_floats(&buffer->axis[k], n);
   return ok;
+}
+
+static bool reserve_surface(SimFrameBuffer *buffer, int32_t count, unsigned needs, bool has_class) {
+  size_t n = padded(count);
+  if ((has_class || needs & (SIM_NEED_CLASS | SIM_NEED_ANISOTROPY)) &&
+      !sim_reserve((void **)&buffer->particle_class, n, 1))
+    return false;
+  if (needs & SIM_NEED_SURFACE &&
+      (!sim_reserve((void **)&buffer->near_surface, n, 1) || !sim_reserve((void **)&buffer->exposed, n, 1)))
+    return false;
+  return !(needs & SIM_NEED_ANISOTROPY) ||
+         (reserve_floats(&buffer->smoothed, 3 * n) && reserve_floats(&buffer->ellipsoid, 6 * n));
 }
 
 // ---- Surface stages --------------------------------------------------------------------------------------------------
@@ -99,41 +113,68 @@ static bool height_field(SimFrameBuffer *buffer, const SimSurface *surface, SimE
   return true;
 }
 
-// The stages that are needed, in an order in which each finds what it reads.
-static bool run_surface_stages(SimFrameBuffer *buffer, unsigned needs, bool has_class, SimProfile *profile,
-                               SimError *error) {
+// The stages that are needed, in an order in which each finds what it reads. The first three share one sweep over the
+// neighbours, whose time is that of the classification. `density`, if any, gets the particles' share of the rest density.
+static bool run_surface_stages(SimFrameBuffer *buffer, const SimSurface *surface, unsigned needs, bool has_class,
+                               float *density, SimProfile *profile, SimError *error) {
   SimFrame *frame = &buffer->frame;
-  SimSurface surface = {.count = frame->count,
-                        .threads = buffer->threads,
-                        .spacing = 2 * frame->particle_radius,
-                        .position = buffer->sorted,
-                        .grid = &frame->grid};
-  memcpy(surface.bounds_min, frame->bounds_min, sizeof surface.bounds_min);
-  memcpy(surface.bounds_max, frame->bounds_max, sizeof surface.bounds_max);
   double since = sim_milliseconds();
-  frame->particle_class = frame->near_surface = NULL;
-  frame->smoothed = frame->ellipsoid = NULL;
+  bool anisotropy = needs & SIM_NEED_ANISOTROPY, flags = needs & SIM_NEED_SURFACE;
+  bool classes = anisotropy || needs & SIM_NEED_CLASS;
+  frame->particle_class = classes ? buffer->particle_class : NULL;
+  frame->smoothed = anisotropy ? buffer->smoothed : NULL;
+  frame->ellipsoid = anisotropy ? buffer->ellipsoid : NULL;
+  frame->near_surface = flags ? buffer->near_surface : NULL;
   frame->height_field = (SimHeightField){{0, 0}, {0, 0}, 0, NULL, NULL};
-  if (needs & (SIM_NEED_CLASS | SIM_NEED_ANISOTROPY)) {
-    if (!has_class) sim_surface_classify(&surface, buffer->particle_class);
-    frame->particle_class = buffer->particle_class;
+  if (density || anisotropy || flags || (classes && !has_class)) {
+    sim_surface_sweep(surface, &(SimSurfaceSums){.density = density,
+                                                 .particle_class = classes ? buffer->particle_class : NULL,
+                                                 .class_given = has_class,
+                                                 .smoothed = anisotropy ? buffer->smoothed : NULL,
+                                                 .covariance = anisotropy ? buffer->ellipsoid : NULL,
+                                                 .exposed = flags ? buffer->exposed : NULL});
     lap(profile, SIM_STAGE_classify, &since);
   }
-  if (needs & SIM_NEED_ANISOTROPY) {
-    sim_surface_anisotropy(&surface, buffer->particle_class, buffer->smoothed, buffer->ellipsoid);
-    frame->smoothed = buffer->smoothed;
-    frame->ellipsoid = buffer->ellipsoid;
+  if (anisotropy) {
+    sim_surface_ellipsoids(surface->wide, surface->count, frame->particle_radius, buffer->ellipsoid, surface->threads);
     lap(profile, SIM_STAGE_anisotropy, &since);
   }
-  if (needs & SIM_NEED_SURFACE) {
-    sim_surface_flags(&surface, buffer->work, buffer->near_surface);
-    frame->near_surface = buffer->near_surface;
+  if (flags) {
+    sim_surface_flags(surface, buffer->exposed, buffer->near_surface);
     lap(profile, SIM_STAGE_flags, &since);
   }
   if (needs & SIM_NEED_HEIGHT_FIELD) {
-    if (!height_field(buffer, &surface, error)) return false;
+    if (!height_field(buffer, surface, error)) return false;
     lap(profile, SIM_STAGE_height_field, &since);
   }
+  return true;
+}
+
+static SimSurface surface_of(const SimFrameBuffer *buffer, const SimWide *wide, float *const position[3],
+                             const float *four, const SimNeighbours *lists) {
+  const SimFrame *frame = &buffer->frame;
+  SimSurface surface = {.wide = wide,
+                        .count = frame->count,
+                        .threads = buffer->threads,
+                        .spacing = 2 * frame->particle_radius,
+                        .position = {position[0], position[1], position[2]},
+                        .four = four,
+                        .grid = &frame->grid,
+                        .lists = lists};
+  memcpy(surface.bounds_min, frame->bounds_min, sizeof surface.bounds_min);
+  memcpy(surface.bounds_max, frame->bounds_max, sizeof surface.bounds_max);
+  return surface;
+}
+
+static bool build_lists(SimFrameBuffer *buffer, const SimWide *wide, float *const position[3], SimError *error) {
+  const SimFrame *frame = &buffer->frame;
+  float spacing = 2 * frame->particle_radius;
+  SimNeighbourResult result = sim_neighbours_build(&buffer->lists, wide, &frame->grid, position, frame->count,
+                                                   SIM_SURFACE_REACH * spacing, buffer->threads);
+  if (result == SIM_NEIGHBOURS_NO_MEMORY) return sim_fail(error, "out of memory");
+  if (result == SIM_NEIGHBOURS_CROWDED)
+    return sim_fail(error, "the particles are crowded into one place: more than their radius %g m allows",
+                    (double)frame->particle_radius);
   return true;
 }
 
@@ -141,6 +182,7 @@ static bool run_surface_stages(SimFrameBuffer *buffer, unsigned needs, bool has_
 
 typedef struct CopyContext {
   const SimWorld *world;
+  const uint32_t *order; ///< of the frame's particles; NULL: that of the world
   SimFrameBuffer *buffer;
 } CopyContext;
 
@@ -148,14 +190,15 @@ static void copy_kernel(int32_t begin, int32_t end, const void *context) {
   const CopyContext *c = context;
   const SimSorted *now = &c->world->particles.now;
   SimFrameBuffer *buffer = c->buffer;
-  for (int32_t i = begin; i < end; i++) {
-    buffer->id[i] = now->id[i];
-    buffer->density[i] = c->world->particles.density[i] * c->world->def.rest_density;
+  for (int64_t i = begin; i < end; i++) {
+    size_t from = c->order ? c->order[i] : (size_t)i;
+    buffer->id[i] = now->id[from];
+    buffer->density[i] = c->world->particles.density[from] * c->world->def.rest_density;
     for (int k = 0; k < 3; k++) {
-      buffer->sorted[k][i] = buffer->position[3 * (int64_t)i + k] = now->position[k][i];
-      buffer->velocity[3 * (int64_t)i + k] = now->velocity[k][i];
+      buffer->position[3 * i + k] = now->position[k][from];
+      buffer->velocity[3 * i + k] = now->velocity[k][from];
     }
-    for (int k = 0; c->world->particles.coloured && k < 3; k++) buffer->colour[3 * (int64_t)i + k] = now->colour[k][i];
+    for (int k = 0; c->world->particles.coloured && k < 3; k++) buffer->colour[3 * i + k] = now->colour[k][from];
   }
 }
 
@@ -179,11 +222,58 @@ static bool copy_obstacles(SimFrameBuffer *buffer, const SimWorld *world, SimErr
   return true;
 }
 
+// The frame's positions once more, in the form that the kernels in wide floats read.
+static void split_kernel(int32_t begin, int32_t end, const void *context) {
+  const SimFrameBuffer *buffer = context;
+  for (int64_t i = begin; i < end; i++) {
+    buffer->four[4 * i + 3] = 0;
+    for (int k = 0; k < 3; k++) buffer->four[4 * i + k] = buffer->axis[k][i] = buffer->position[3 * i + k];
+  }
+}
+
+static void split_positions(SimFrameBuffer *buffer) {
+  int32_t count = buffer->frame.count;
+  sim_parallel_for(buffer->threads, count, split_kernel, buffer);
+  sim_particles_pad(&(SimParticles){.count = count}, buffer->four);
+}
+
+// What the surface stages read of a world. Where its support is their reach, they share its lists; where it is longer,
+// only its order; where it is shorter, its cells are too small for them, and the frame has an order of its own.
+static bool world_surface(const SimWorld *world, unsigned needs, SimFrameBuffer *buffer, SimSurface *surface,
+                          SimError *error) {
+  const SimParticles *p = &world->particles;
+  float reach = SIM_SURFACE_REACH * world->cubic.spacing;
+  bool lists = needs & (SIM_NEED_CLASS | SIM_NEED_ANISOTROPY | SIM_NEED_SURFACE);
+  if (world->cubic.h < reach) {
+    if (!reserve_order(buffer, p->count)) return sim_fail(error, "out of memory");
+    split_positions(buffer);
+    *surface = surface_of(buffer, world->wide, buffer->axis, buffer->four, &buffer->lists);
+    return !lists || build_lists(buffer, world->wide, buffer->axis, error);
+  }
+  bool shared = world->cubic.h == reach;
+  *surface = surface_of(buffer, world->wide, p->now.position, p->first, shared ? &world->neighbours : &buffer->lists);
+  return shared || !lists || build_lists(buffer, world->wide, p->now.position, error);
+}
+
+// The order of the frame's particles and its grid.
+static bool order_world(const SimWorld *world, SimFrameBuffer *buffer, const uint32_t **order, SimError *error) {
+  float reach = SIM_SURFACE_REACH * world->cubic.spacing;
+  *order = NULL;
+  if (world->cubic.h >= reach) return copy_grid(buffer, &world->sort.grid, error);
+  if (!sim_grid_sort(&buffer->sort, world->particles.now.position, world->particles.count, reach, world->threads))
+    return sim_fail(error, "out of memory");
+  *order = buffer->sort.order;
+  buffer->frame.grid = buffer->sort.grid;
+  return true;
+}
+
 const SimFrame *sim_world_frame(SimWorld *world, unsigned needs, SimFrameBuffer *buffer, SimError *error) {
   if (!sim_world_settle(world, error)) return NULL;
   double since = sim_milliseconds();
   int32_t count = world->particles.count;
-  if (!reserve_particles(buffer, count, needs)) return sim_fail(error, "out of memory"), NULL;
+  if (!reserve_particles(buffer, count, world->particles.coloured, false) ||
+      !reserve_surface(buffer, count, needs, false))
+    return sim_fail(error, "out of memory"), NULL;
   SimFrame *frame = &buffer->frame;
   buffer->threads = world->threads;
   frame->index = world->advances;
@@ -192,7 +282,9 @@ const SimFrame *sim_world_frame(SimWorld *world, unsigned needs, SimFrameBuffer 
   frame->particle_radius = world->def.particle_radius;
   frame->container = world->def.container;
   frame->has_container = true;
-  sim_parallel_for(world->threads, count, copy_kernel, &(CopyContext){world, buffer});
+  const uint32_t *order;
+  if (!order_world(world, buffer, &order, error) || !copy_obstacles(buffer, world, error)) return NULL;
+  sim_parallel_for(world->threads, count, copy_kernel, &(CopyContext){world, order, buffer});
   frame->id = buffer->id;
   frame->position = buffer->position;
   frame->velocity = buffer->velocity;
@@ -200,9 +292,10 @@ const SimFrame *sim_world_frame(SimWorld *world, unsigned needs, SimFrameBuffer 
   frame->colour = world->particles.coloured ? buffer->colour : NULL;
   frame->radius = NULL;
   bounds_of(frame);
-  if (!copy_grid(buffer, &world->sort.grid, error) || !copy_obstacles(buffer, world, error)) return NULL;
+  SimSurface surface;
+  if (!world_surface(world, needs, buffer, &surface, error)) return NULL;
   lap(&world->profile, SIM_STAGE_frame, &since);
-  return run_surface_stages(buffer, needs, false, &world->profile, error) ? frame : NULL;
+  return run_surface_stages(buffer, &surface, needs, false, NULL, &world->profile, error) ? frame : NULL;
 }
 
 // ---- From particles that come from elsewhere --------------------------------------------------------------------------
@@ -224,12 +317,13 @@ static bool check_set(const SimParticleSet *set, SimError *error) {
 typedef struct SetContext {
   const SimParticleSet *set;
   SimFrameBuffer *buffer;
+  float *axis[3];
 } SetContext;
 
-static void split_kernel(int32_t begin, int32_t end, const void *context) {
+static void unsorted_kernel(int32_t begin, int32_t end, const void *context) {
   const SetContext *c = context;
   for (int64_t i = begin; i < end; i++)
-    for (int k = 0; k < 3; k++) c->buffer->unsorted[k][i] = c->set->position[3 * i + k];
+    for (int k = 0; k < 3; k++) c->axis[k][i] = c->set->position[3 * i + k];
 }
 
 static void gather_kernel(int32_t begin, int32_t end, const void *context) {
@@ -245,44 +339,47 @@ static void gather_kernel(int32_t begin, int32_t end, const void *context) {
     if (set->colour) memcpy(buffer->colour + 3 * i, set->colour + 3 * from, sizeof zero);
     if (set->radius) buffer->radius[i] = set->radius[from];
     if (set->particle_class) buffer->particle_class[i] = set->particle_class[from] ? SIM_AGGREGATED : SIM_SPLASH;
-    for (int k = 0; k < 3; k++) buffer->sorted[k][i] = set->position[3 * from + k];
   }
 }
 
-static bool sort_set(const SimParticleSet *set, float cell, SimFrameBuffer *buffer, SimError *error) {
-  SetContext context = {set, buffer};
-  sim_parallel_for(buffer->threads, set->count, split_kernel, &context);
-  if (!sim_grid_sort(&buffer->sort, buffer->unsorted, set->count, cell, buffer->threads))
+static bool sort_set(const SimParticleSet *set, SimFrameBuffer *buffer, SimError *error) {
+  SetContext context = {.set = set, .buffer = buffer};
+  size_t n = padded(set->count);
+  for (size_t k = 0; k < 3; k++) context.axis[k] = buffer->four + k * n; // until the order is known
+  sim_parallel_for(buffer->threads, set->count, unsorted_kernel, &context);
+  float cell = SIM_SURFACE_REACH * 2 * buffer->frame.particle_radius;
+  if (!sim_grid_sort(&buffer->sort, context.axis, set->count, cell, buffer->threads))
     return sim_fail(error, "out of memory");
-  if (sim_grid_candidates(&buffer->sort.grid, 2 * cell) > 1e13)
-    return sim_fail(error, "the particles are crowded into one place: more than their radius %g m allows",
-                    (double)(cell / SIM_SURFACE_CELL / 2));
+  buffer->frame.grid = buffer->sort.grid;
   sim_parallel_for(buffer->threads, set->count, gather_kernel, &context);
+  split_positions(buffer);
   return true;
 }
 
 static void scale_kernel(int32_t begin, int32_t end, const void *context) {
-  float *density = ((const SetContext *)context)->buffer->density;
-  for (int32_t i = begin; i < end; i++) density[i] *= 1000;
+  const SimFrameBuffer *buffer = context;
+  for (int32_t i = begin; i < end; i++) buffer->density[i] *= 1000;
 }
 
 const SimFrame *sim_frame_from_particles(const SimParticleSet *set, unsigned needs, int32_t threads,
                                          SimFrameBuffer *buffer, SimError *error) {
   if (!check_set(set, error)) return NULL;
-  if (!reserve_particles(buffer, set->count, needs)) return sim_fail(error, "out of memory"), NULL;
+  if (!reserve_particles(buffer, set->count, set->colour, set->radius) || !reserve_order(buffer, set->count) ||
+      !reserve_surface(buffer, set->count, needs, set->particle_class))
+    return sim_fail(error, "out of memory"), NULL;
   SimFrame *frame = &buffer->frame;
+  const SimWide *wide = sim_wide();
   buffer->threads = sim_parallel_threads(threads);
   *frame = (SimFrame){.index = set->index, .time = set->time, .count = set->count};
   frame->particle_radius =
       set->particle_radius > 0 ? set->particle_radius : sim_estimate_radius(set->position, set->count);
-  if (!sort_set(set, SIM_SURFACE_CELL * 2 * frame->particle_radius, buffer, error)) return NULL;
+  if (!sort_set(set, buffer, error) || !build_lists(buffer, wide, buffer->axis, error)) return NULL;
   frame->id = buffer->id;
   frame->position = buffer->position;
   frame->velocity = buffer->velocity;
   frame->density = buffer->density;
   frame->colour = set->colour ? buffer->colour : NULL;
   frame->radius = set->radius ? buffer->radius : NULL;
-  frame->grid = buffer->sort.grid;
   frame->has_container = set->container != NULL;
   if (set->container) frame->container = *set->container;
   bounds_of(frame);
@@ -290,9 +387,8 @@ const SimFrame *sim_frame_from_particles(const SimParticleSet *set, unsigned nee
     memcpy(frame->container.min, frame->bounds_min, sizeof frame->bounds_min);
     memcpy(frame->container.max, frame->bounds_max, sizeof frame->bounds_max);
   }
-  SimSurface surface = {set->count, buffer->threads, 2 * frame->particle_radius, buffer->sorted, &frame->grid, {0},
-                        {0}};
-  sim_surface_density(&surface, buffer->density);
-  sim_parallel_for(buffer->threads, set->count, scale_kernel, &(SetContext){set, buffer});
-  return run_surface_stages(buffer, needs, set->particle_class != NULL, NULL, error) ? frame : NULL;
+  SimSurface surface = surface_of(buffer, wide, buffer->axis, buffer->four, &buffer->lists);
+  if (!run_surface_stages(buffer, &surface, needs, set->particle_class, buffer->density, NULL, error)) return NULL;
+  sim_parallel_for(buffer->threads, set->count, scale_kernel, buffer);
+  return frame;
 }

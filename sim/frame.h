@@ -104,10 +104,10 @@ typedef struct SimFrame {
   float bounds_min[3], bounds_max[3]; ///< m, the box around all positions, or the container's where there are none
 
   // Surface stages, each NULL unless needed.
-  const uint8_t *particle_class; ///< SimClass, (n), written by surface_classify
-  const float *smoothed;       ///< m, (n, 3): smoothed centres x̄, written by surface_anisotropy
+  const uint8_t *particle_class; ///< SimClass, (n), written by surface_sweep
+  const float *smoothed;       ///< m, (n, 3): smoothed centres x̄, written by surface_sweep
   const float *ellipsoid;      ///< m, (n, 6): the symmetric matrix T = (xx, yy, zz, xy, xz, yz) that maps the unit ball
-                               ///< onto the particle's ellipsoid around its smoothed centre, written by surface_anisotropy
+                               ///< onto the particle's ellipsoid around its smoothed centre, written by surface_ellipsoids
   const uint8_t *near_surface; ///< 1 where the particle can be seen from outside the water, (n), written by surface_flags
   SimHeightField height_field; ///< written by surface_heightfield
 

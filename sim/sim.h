@@ -259,7 +259,8 @@ void sim_frame_buffer_destroy(SimFrameBuffer *buffer); ///< NULL is allowed
 
 // ---- Measuring -----------------------------------------------------------------------------------------------------------
 
-/// Stages of a step and of a frame, in the order in which they run.
+/// Stages of a step and of a frame, in the order in which they run. `classify` is the sweep over the neighbours that
+/// anisotropy and flags need too.
 #define SIM_STAGES(X) \
   X(predict) X(sort) X(neighbours) X(tension) X(warm_start) X(density) X(correct) X(velocity) X(vorticity) X(viscosity) X(mix) \
   X(frame) X(classify) X(anisotropy) X(flags) X(height_field)

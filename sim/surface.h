@@ -1,34 +1,65 @@
 // The surface stages: from sorted particles to what a renderer wants. Each works on any particle set, simulated or read
 // from a file, and writes one or two arrays of a frame.
+//
+// Three of them share one sweep over the neighbours: density and class, the moments that smoothed centres and ellipsoids
+// are made of, and which particles are exposed (wide/surface.c). The ellipsoids are then made of the covariances
+// (wide/ellipsoid.c) and the flags of the exposed particles (surface_flags.c).
 #ifndef LIDO_SIM_SURFACE_H
 #define LIDO_SIM_SURFACE_H
 
-#include "sim/grid.h"
+#include "sim/kernels.h"
+#include "sim/neighbours.h"
 
-/// What a surface stage reads: sorted positions and their grid.
+/// Reach of the surface stages in spacings: the support of the density, R of the anisotropy, and so the radius of the
+/// neighbour lists and the smallest cell of a frame's grid.
+#define SIM_SURFACE_REACH 2.0f
+
+/// What a surface stage reads: sorted positions, their grid and their neighbours.
 typedef struct SimSurface {
+  const SimWide *wide;
   int32_t count, threads;
-  float spacing;             ///< m, of the particles at rest
-  float *const *position;    ///< m, x, y and z, each (count), sorted by the grid
-  const SimGrid *grid;       ///< cells of at least SIM_SURFACE_CELL spacings
+  float spacing;            ///< m, of the particles at rest
+  const float *position[3]; ///< m, x, y and z, each (count), sorted by the grid; readable a SIM_CHUNK further
+  const float *four;        ///< m, (count, 4): the same side by side, infinitely far ones behind the last (particles.h)
+  const SimGrid *grid;      ///< cells of at least SIM_SURFACE_REACH spacings
+  const SimNeighbours *lists;         ///< of exactly SIM_SURFACE_REACH spacings
   float bounds_min[3], bounds_max[3]; ///< m, around the positions
 } SimSurface;
 
-/// Support of the density in spacings, and so the smallest cell of a frame's grid.
-#define SIM_SURFACE_CELL 2.0f
-
-/// density[i] = the share of the rest density at particle i, from particles alone (no walls).
-void sim_surface_density(const SimSurface *surface, float *density);
-
-/// particle_class[i] = SIM_SPLASH where that density is below SIM_SPLASH_DENSITY, SIM_AGGREGATED elsewhere.
+/// A particle of less than this share of the rest density is a splash.
 #define SIM_SPLASH_DENSITY 0.55f
-void sim_surface_classify(const SimSurface *surface, uint8_t *particle_class);
 
-/// Smoothed centres and ellipsoids; see surface_anisotropy.c.
-void sim_surface_anisotropy(const SimSurface *surface, const uint8_t *particle_class, float *smoothed, float *ellipsoid);
+/// What the sweep writes; an array that is NULL is left out. All have room for whole chunks and one chunk more.
+typedef struct SimSurfaceSums {
+  float *density;          ///< (count): share of the rest density, from particles alone (no walls)
+  uint8_t *particle_class; ///< (count): SIM_SPLASH or SIM_AGGREGATED by that density …
+  bool class_given;        ///< … unless it is there already
+  float *smoothed;         ///< m, (count, 3): smoothed centres
+  float *covariance; ///< m², (chunks, 6, SIM_CHUNK): xx, yy, zz, xy, xz, yz; all zero where the shape is a sphere
+  uint8_t *exposed;  ///< (count): 1 where the particle lies at the outside of the water; 0 in the room behind
+} SimSurfaceSums;
 
-/// near_surface[i] = 1 where the particle can be seen from outside the water; `work` is (count) of scratch.
-void sim_surface_flags(const SimSurface *surface, uint8_t *work, uint8_t *near_surface);
+/// One sweep over all neighbours. `smoothed` and `covariance` go together and need classes.
+void sim_surface_sweep(const SimSurface *surface, const SimSurfaceSums *sums);
+
+/// What the kernel of the sweep reads.
+typedef struct SimSweepContext {
+  const SimSurface *surface;
+  SimSurfaceSums sums;
+  SimCubic cubic; ///< of support SIM_SURFACE_REACH
+} SimSweepContext;
+
+/// Turn covariances into ellipsoids in place: (chunks, 6, SIM_CHUNK) becomes (count, 6), see SimFrame. `radius` is that of
+/// a particle, m.
+void sim_surface_ellipsoids(const SimWide *wide, int32_t count, float radius, float *covariance, int32_t threads);
+
+/// What the kernel of the ellipsoids reads.
+typedef struct SimEllipsoidContext {
+  float radius, *ellipsoid;
+} SimEllipsoidContext;
+
+/// near_surface[i] = 1 where the particle can be seen from outside the water.
+void sim_surface_flags(const SimSurface *surface, const uint8_t *exposed, uint8_t *near_surface);
 
 /// The nodes of a height field over the given bounds. Returns their number.
 int64_t sim_surface_height_nodes(const SimSurface *surface, const float low[3], const float high[3],
@@ -37,8 +68,12 @@ int64_t sim_surface_height_nodes(const SimSurface *surface, const float low[3], 
 void sim_surface_heightfield(const SimSurface *surface, float floor, const SimHeightField *field, float *height,
                              float *normal);
 
-/// Eigenvalues (largest first) and unit eigenvectors of the symmetric matrix (xx, yy, zz, xy, xz, yz);
-/// vector[k] belongs to value[k] and the three are right-handed.
-void sim_eigen_symmetric(const float matrix[6], float value[3], float vector[3][3]);
+/// What the kernel of the heights reads.
+typedef struct SimHeightContext {
+  const SimSurface *surface;
+  const SimHeightField *field;
+  float radius, step, iso, floor; ///< m, m, iso-value, m
+  float *height, *normal;
+} SimHeightContext;
 
 #endif

@@ -12,7 +12,7 @@ extern const SimWide sim_wide_scalar;
 
 const SimWide *sim_wide_named(const char *name) {
 #if defined(SIM_HAVE_X86)
-  bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi2");
+  bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi2") && __builtin_cpu_supports("fma");
   bool avx512 = avx2 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
                 __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl");
   if (avx512 && !strcmp(name, "avx512")) return &sim_wide_avx512;

@@ -16,4 +16,8 @@ const SimWide WIDE(sim_wide) = {
     .tension_force = WIDE(sim_tension_force),
     .vorticity_curl = WIDE(sim_vorticity_curl),
     .vorticity_confine = WIDE(sim_vorticity_confine),
+    .surface_sweep = WIDE(sim_surface_sweep),
+    .surface_ellipsoids = WIDE(sim_surface_ellipsoids),
+    .surface_heights = WIDE(sim_surface_heights),
+    .machine_fma = WIDE(sim_machine_fma),
 };

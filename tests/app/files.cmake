@@ -16,7 +16,7 @@ endif()
 
 lido_add_test(app_mesh_file SOURCES test_mesh_file.c LIBRARIES lido_test_runner lido_app)
 
-foreach(subject output image particle_file files_cli simulate_cli render_cli)
+foreach(subject output image particle_file files_cli simulate_cli bench_cli render_cli)
   lido_add_test(app_${subject} SOURCES test_${subject}.c LIBRARIES lido_test_runner lido_app PkgConfig::FILES_CJSON
                 TIMEOUT 600)
 endforeach()

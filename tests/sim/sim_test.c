@@ -52,6 +52,16 @@ uint64_t test_hash(const SimFrame *frame) {
   return hash_bytes(hash, frame->density, n * sizeof(float));
 }
 
+uint64_t test_hash_surface(const SimFrame *frame, uint64_t hash) {
+  size_t n = (size_t)frame->count, nodes = (size_t)(frame->height_field.size[0] * frame->height_field.size[1]);
+  hash = hash_bytes(hash, frame->particle_class, n);
+  hash = hash_bytes(hash, frame->near_surface, n);
+  hash = hash_bytes(hash, frame->smoothed, 3 * n * sizeof(float));
+  hash = hash_bytes(hash, frame->ellipsoid, 6 * n * sizeof(float));
+  hash = hash_bytes(hash, frame->height_field.height, nodes * sizeof(float));
+  return hash_bytes(hash, frame->height_field.normal, 3 * nodes * sizeof(float));
+}
+
 float *test_lattice(int nx, int ny, int nz, double spacing, double jitter, uint64_t seed) {
   float *position = malloc(3 * sizeof(float) * (size_t)(nx * ny * nz));
   size_t at = 0;

@@ -33,6 +33,9 @@ const SimFrame *test_frame(SimWorld *world, unsigned needs, SimFrameBuffer *buff
 /// FNV-1a of ids, positions, velocities and densities, in the order of the frame.
 uint64_t test_hash(const SimFrame *frame);
 
+/// The same of what the surface stages wrote, on top of another hash.
+uint64_t test_hash_surface(const SimFrame *frame, uint64_t hash);
+
 /// Positions of a lattice nx × ny × nz, each displaced by up to jitter spacings; to be freed.
 float *test_lattice(int nx, int ny, int nz, double spacing, double jitter, uint64_t seed);
 

@@ -113,11 +113,13 @@ static void attributes_follow_their_particles(void **state) {
   free(position);
 }
 
-// Particles of a world handed back as a set give the same surface: what `lido render` shows of files is what was simulated.
-static void a_set_gives_the_same_surface_as_its_world(void **state) {
-  (void)state;
+// Particles of a world handed back as a set give the same surface: what `lido render` shows of files is what was
+// simulated. Also where the support is shorter or longer than the reach of the surface stages.
+static void check_set_of_world(SimSolver solver, float support) {
   SimBlockDef block;
   SimWorldDef def = test_def((const float[3]){1.2f, 1, 0.4f}, &block, (const float[3]){0.5f, 0.6f, 0.4f});
+  def.solver = solver;
+  def.support = support;
   SimWorld *world = test_create(&def);
   SimFrameBuffer *one = sim_frame_buffer_create(), *two = sim_frame_buffer_create();
   SimError error;
@@ -125,21 +127,65 @@ static void a_set_gives_the_same_surface_as_its_world(void **state) {
   const SimFrame *frame = test_frame(world, SIM_NEED_ALL, one);
   assert_int_equal(frame->index, 25);
   assert_true(fabs(frame->time - 25.0 / 60) < 1e-9 && frame->has_container);
-  SimParticleSet set = {.count = frame->count, .position = frame->position, .id = frame->id, .particle_radius = 0.025f};
+  SimParticleSet set = {.count = frame->count,
+                        .position = frame->position,
+                        .id = frame->id,
+                        .particle_radius = 0.025f,
+                        .container = &frame->container};
   const SimFrame *again = sim_frame_from_particles(&set, SIM_NEED_ALL, 1, two, &error);
   assert_non_null(again);
-  int32_t *at = malloc(sizeof *at * (size_t)frame->count);
+  int32_t *at = malloc(sizeof *at * (size_t)frame->count), shaped = 0;
   for (int32_t i = 0; i < frame->count; i++) at[again->id[i]] = i;
   for (int32_t i = 0; i < frame->count; i++) {
     int32_t j = at[frame->id[i]];
+    assert_memory_equal(frame->position + 3 * i, again->position + 3 * j, 3 * sizeof(float));
     assert_int_equal(frame->particle_class[i], again->particle_class[j]);
     assert_int_equal(frame->near_surface[i], again->near_surface[j]);
     for (int k = 0; k < 3; k++) assert_true(fabsf(frame->smoothed[3 * i + k] - again->smoothed[3 * j + k]) < 1e-6f);
     for (int k = 0; k < 6; k++) assert_true(fabsf(frame->ellipsoid[6 * i + k] - again->ellipsoid[6 * j + k]) < 1e-5f);
+    shaped += frame->ellipsoid[6 * i + 3] != 0;
   }
+  assert_true(shaped > frame->count / 2);
+  const SimHeightField *field = &frame->height_field;
+  assert_int_equal(field->size[0], again->height_field.size[0]);
+  for (int k = 0; k < field->size[0] * field->size[1]; k++)
+    assert_true(fabsf(field->height[k] - again->height_field.height[k]) < 1e-4f);
   free(at);
   sim_frame_buffer_destroy(one);
   sim_frame_buffer_destroy(two);
+  sim_world_destroy(world);
+}
+
+static void a_set_gives_the_same_surface_as_its_world(void **state) {
+  (void)state;
+  const float supports[4] = {1.5f, 1.9f, 2, 2.6f};
+  for (int k = 0; k < 4; k++) check_set_of_world(SIM_SOLVER_PBF, supports[k]);
+  check_set_of_world(SIM_SOLVER_SPH, 2);
+}
+
+// A frame that nobody needs a surface of holds id, position, velocity, density and the cells; a warm one makes no block.
+static void frames_hold_what_is_needed(void **state) {
+  (void)state;
+  SimBlockDef block;
+  SimWorldDef def = test_def((const float[3]){1.2f, 1, 0.8f}, &block, (const float[3]){0.8f, 0.8f, 0.8f});
+  SimWorld *world = test_create(&def);
+  size_t before = sim_bytes_in_use();
+  SimFrameBuffer *buffer = sim_frame_buffer_create(), *two = sim_frame_buffer_create();
+  int32_t count = test_frame(world, SIM_NEED_NOTHING, buffer)->count;
+  double each = (double)(sim_bytes_in_use() - before) / count;
+  if (each > 50) fail_msg("%.1f bytes a particle", each);
+  const SimFrame *frame = test_frame(world, SIM_NEED_ALL, buffer);
+  SimParticleSet set = {.count = count, .position = frame->position, .particle_radius = 0.025f};
+  SimError error;
+  assert_non_null(sim_frame_from_particles(&set, SIM_NEED_ALL, 1, two, &error));
+  size_t blocks = sim_allocation_count();
+  for (unsigned needs = 0; needs <= SIM_NEED_ALL; needs++) {
+    test_frame(world, needs, buffer);
+    assert_non_null(sim_frame_from_particles(&set, needs, 1, two, &error));
+  }
+  assert_int_equal(sim_allocation_count(), blocks);
+  sim_frame_buffer_destroy(two);
+  sim_frame_buffer_destroy(buffer);
   sim_world_destroy(world);
 }
 
@@ -203,6 +249,7 @@ int main(void) {
       cmocka_unit_test(empty_and_single_sets),
       cmocka_unit_test(attributes_follow_their_particles),
       cmocka_unit_test(a_set_gives_the_same_surface_as_its_world),
+      cmocka_unit_test(frames_hold_what_is_needed),
       cmocka_unit_test(a_frame_stays_while_the_world_moves_on),
       cmocka_unit_test(the_grid_of_a_frame_holds_its_particles),
       cmocka_unit_test(radius_is_estimated_from_the_spacing),

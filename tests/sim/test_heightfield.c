@@ -96,6 +96,32 @@ static void normals_follow_the_slope(void **state) {
   free(all);
 }
 
+// Two thousand particles in one place on a pool, more than a column holds side by side: a hill of radius h.
+static void a_heap_is_a_hill(void **state) {
+  (void)state;
+  enum { POOL = 12 * 4 * 12, HEAP = 2000 };
+  float *pool = test_lattice(12, 4, 12, 0.1, 0, 1), *all = malloc(sizeof(float) * 3 * (POOL + HEAP));
+  memcpy(all, pool, sizeof(float) * 3 * POOL);
+  for (int i = 0; i < 3 * HEAP; i++) all[3 * POOL + i] = i % 3 == 1 ? 0.45f : 0.65f;
+  SimFrameBuffer *buffer = sim_frame_buffer_create();
+  const SimFrame *frame = frame_of(all, POOL + HEAP, buffer);
+  const SimHeightField *field = &frame->height_field;
+  int hill = 0;
+  for (int node = 0; node < field->size[0] * field->size[1]; node++) {
+    double x = (double)field->origin[0] + node % field->size[0] * (double)field->spacing - 0.65;
+    double z = (double)field->origin[1] + node / field->size[0] * (double)field->spacing - 0.65;
+    double left = 0.04 - x * x - z * z;
+    if (left < 0.001) continue;
+    hill++;
+    if (fabs((double)field->height[node] - 0.45 - sqrt(left)) > 0.025)
+      fail_msg("height %g over (%g, %g) from the heap", (double)field->height[node], x, z);
+  }
+  assert_true(hill > 6);
+  sim_frame_buffer_destroy(buffer);
+  free(all);
+  free(pool);
+}
+
 static void dry_places(void **state) {
   (void)state;
   SimFrameBuffer *buffer = sim_frame_buffer_create();
@@ -120,6 +146,7 @@ int main(void) {
       cmocka_unit_test(heights_match_the_formula),
       cmocka_unit_test(a_level_pool_is_level),
       cmocka_unit_test(normals_follow_the_slope),
+      cmocka_unit_test(a_heap_is_a_hill),
       cmocka_unit_test(dry_places),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -56,7 +56,7 @@ double reference_density(const float *position, int32_t count, int32_t i, double
 
 int reference_anisotropy(const float *position, int32_t count, int32_t i, double spacing, double centre[3],
                          double ellipsoid[6]) {
-  double radius = 2.5 * spacing, total = 0, mean[3] = {0, 0, 0}, c[3][3] = {{0}};
+  double radius = 2 * spacing, total = 0, mean[3] = {0, 0, 0}, c[3][3] = {{0}};
   int neighbours = -1;
   for (int32_t j = 0; j < count; j++) {
     double q = distance(position + 3 * i, position + 3 * j) / radius;
