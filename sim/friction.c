@@ -38,6 +38,10 @@ static void rub(const SimStep *step, int32_t i, const SimSolid *solid) {
   }
   float loss = 1 - left_over(solid->friction, sqrtf(speed2), step->dt / step->cubic.spacing);
   for (int k = 0; k < 3; k++) v[k][i] -= loss * u[k];
+  if (!step->reaction || solid->body[0] < 0) return;
+  // The floating body there gets the opposite.
+  sim_reaction_solid(step->reaction, i, solid);
+  for (int k = 0; k < 3; k++) step->reaction->notes[i].shift[0][k] = -loss * u[k] * step->dt;
 }
 
 static void friction_kernel(int32_t begin, int32_t end, const void *context) {
@@ -45,10 +49,12 @@ static void friction_kernel(int32_t begin, int32_t end, const void *context) {
   const SimParticles *p = c->step->particles;
   for (int32_t first = begin; first < end; first += SIM_CHUNK) {
     if (!p->near[first / SIM_CHUNK]) continue;
+    if (c->step->reaction)
+      sim_reaction_none(c->step->reaction, first, first + SIM_CHUNK < end ? first + SIM_CHUNK : end);
     int32_t last = first + SIM_CHUNK < end ? first + SIM_CHUNK : end;
     for (int32_t i = first; i < last; i++) {
       SimSolid solid;
-      // `solid` of the particle was stored by the last density sweep: cheap to ask first.
+      // The share was stored by the last density sweep: cheap to ask first.
       if (p->solid[4 * (size_t)i + 3] < c->least) continue;
       sim_boundary_solid(c->step->boundary, NULL, p->first + 4 * (size_t)i, &solid);
       if (solid.friction > 0) rub(c->step, i, &solid);
@@ -64,4 +70,5 @@ void sim_step_friction(const SimStep *step) {
   float slope;
   Friction context = {step, 0.5f * sim_wall_share(&boundary->wall, 0.5f * step->cubic.spacing, &slope)};
   sim_parallel_for(step->threads, step->particles->count, friction_kernel, &context);
+  sim_step_collect(step);
 }

@@ -106,7 +106,8 @@ static bool substep(SimWorld *world, float dt, SimError *error) {
   if (!sim_step_check(world, SIM_STAGE_predict, error)) return false;
   sim_step_lap(world, SIM_STAGE_predict, &since);
 
-  double move = (double)dt * (double)sim_largest_speed(world, world->particles.now.next_velocity);
+  float speed = sim_largest_speed(world, world->particles.now.next_velocity);
+  double move = (double)dt * (double)(speed + (world->motion.movers ? world->motion.clamp_speed : 0));
   if (!lists(world, move, &since, error)) return false;
   world->profile.neighbour_pairs += world->neighbours.pairs;
 

@@ -225,7 +225,10 @@ bool sim_step_neighbours(SimWorld *world, SimStage sort_stage, SimStage list_sta
 
 // ---- After the pressure -----------------------------------------------------------------------------------------------
 
-void sim_step_finish(SimWorld *world, const SimStep *step, double *since) {
+void sim_step_finish(SimWorld *world, const SimStep *from, double *since) {
+  SimStep all = *from;
+  const SimStep *step = &all;
+  all.reaction = world->motion.rigid ? &world->motion.reaction : NULL;
   sim_step_vorticity(step);
   sim_step_lap(world, SIM_STAGE_vorticity, since);
   sim_step_viscosity(step);

@@ -22,6 +22,8 @@ double sim_tension_longest(const SimWorld *world) {
 void sim_step_tension(const SimStep *from, const SimWorldDef *def, const float *place) {
   if (!(def->surface_tension > 0)) return;
   SimStep step = *from;
+  step.reaction = NULL;
+  if (place == step.particles->second) step.boundary = step.start; // where particles are, and walls with them
   SimParticles *p = step.particles;
   double sigma = (double)def->surface_tension, density = (double)def->rest_density, h = (double)step.cubic.h;
   double gamma = sigma * 7040 / (21 * density * density * h * h), mass = density * (double)step.cubic.volume;

@@ -53,21 +53,20 @@ void WIDE(sim_sph_density)(int32_t begin, int32_t end, const void *context) {
     Sums sums = sum_density(step, own, v, lists->index + (size_t)lists->start[chunk] * SIM_CHUNK + i % SIM_CHUNK,
                             lists->length[chunk]);
     SimF density = sim_f(cubic->value_scale) + solid[3] + value * sums.density, rate = slope * sums.rate;
-    for (int k = 0; k < 3; k++) rate = rate + solid[k] * v[k];
+    // A wall of the box stands still. What an obstacle's own motion adds to the rate is left out: it only damps.
+    for (int k = 0; k < 3 && p->near[chunk] == SIM_NEAR_WALL; k++) rate = rate + solid[k] * v[k];
     sim_store(p->density + i, density);
     sim_store4(p->second + 4 * (size_t)i, own[0], own[1], own[2], pressure(step, density, rate));
   }
 }
 
-// Tell the floating bodies at these particles what they did to them: they were moved by −dt² κ P ∇f.
-static void note_reactions(const SimStep *step, int32_t i, SimF answer) {
-  const SimParticles *p = step->particles;
-  float lane[SIM_LANES];
-  sim_store(lane, answer);
-  for (int32_t k = 0; k < SIM_LANES && i + k < p->count; k++) {
-    const float *place = p->first + 4 * (size_t)(i + k);
-    sim_reaction_corrected(step->reaction, i + k, lane[k], -1, 1, place, place);
-  }
+// What the pressure of these particles does to floating bodies: the velocity changes by answer/dt ∇f.
+static void note_bodies(const SimStep *step, int32_t i, SimF answer) {
+  static const float still[3] = {0, 0, 0};
+  float answers[SIM_LANES];
+  sim_store(answers, answer);
+  for (int32_t k = 0; k < SIM_LANES && i + k < step->particles->count; k++)
+    sim_reaction_corrected(step->reaction, i + k, answers[k], -1, 0, still, still);
 }
 
 // dv_i/dt = −Σ_j V (P_i + P_j) ∇W − κ P_i ∇f; positions and P = p/(ρ0 ρ²) in `second`.
@@ -93,11 +92,12 @@ void WIDE(sim_sph_force)(int32_t begin, int32_t end, const void *context) {
       sum[2] = sum[2] + factor * dz;
     }
     if (p->near[chunk]) sim_load4(p->solid + 4 * (size_t)i, solid);
+    SimF answer = wall * own[3];
     for (int k = 0; k < 3; k++) {
       float *v = p->now.next_velocity[k] + i;
-      sim_store(v, sim_load(v) - dt * (slope * sum[k] + wall * own[3] * solid[k]));
+      sim_store(v, sim_load(v) - dt * (slope * sum[k] + answer * solid[k]));
     }
     sim_store(p->now.pressure + i, s.zero - own[3]);
-    if (step->reaction && p->near[chunk] & SIM_NEAR_BODY) note_reactions(step, i, s.zero - dt * dt * wall * own[3]);
+    if (step->reaction && p->near[chunk] & SIM_NEAR_BODY) note_bodies(step, i, s.zero - dt * dt * answer);
   }
 }
