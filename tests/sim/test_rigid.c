@@ -243,11 +243,12 @@ static void a_glass_holds_its_bodies(void **state) {
 // ---- Water and bodies ------------------------------------------------------------------------------------------------
 
 // Without gravity, no walls in reach: what the water loses the bodies have.
-static void assert_momentum_is_kept(const SimObstacleDef bodies[2], double pushed[2]) {
+static void assert_momentum_is_kept(SimSolver solver, const SimObstacleDef bodies[2], double pushed[2]) {
   SimWorldDef def = test_def((const float[3]){4, 2, 2}, &block, (const float[3]){1, 1, 1});
   block = (SimBlockDef){{0.9f, 0.8f, 0.85f}, {1.3f, 1.2f, 1.25f}, {2, 0.1f, 0}, {0, 0, 0}};
   def.obstacles = bodies;
   def.obstacle_count = 2;
+  def.solver = solver;
   memset(def.gravity, 0, sizeof def.gravity);
   SimWorld *world = test_create(&def);
   SimMeasures start = sim_world_measures(world);
@@ -272,8 +273,23 @@ static void momentum_is_kept(void **state) {
   const SimObstacleDef bodies[2] = {floating(SIM_BOX, 0.3f, 300, 1.5f, 1, 1),
                                     floating(SIM_SPHERE, 0.3f, 200, 1.85f, 1.05f, 1)};
   double pushed[2];
-  assert_momentum_is_kept(bodies, pushed);
+  assert_momentum_is_kept(SIM_SOLVER_PBF, bodies, pushed);
   assert_true(pushed[0] > 1.51);
+  assert_momentum_is_kept(SIM_SOLVER_SPH, bodies, pushed);
+  assert_true(pushed[0] > 1.51);
+}
+
+// What friction takes from the water the bodies get.
+static void momentum_is_kept_with_friction(void **state) {
+  (void)state;
+  SimObstacleDef bodies[2] = {floating(SIM_BOX, 0.3f, 300, 1.5f, 1, 1), floating(SIM_SPHERE, 0.3f, 200, 1.85f, 1.05f, 1)};
+  bodies[0].friction = 0.8f;
+  bodies[1].friction = 1;
+  for (int solver = 0; solver < 2; solver++) {
+    double pushed[2];
+    assert_momentum_is_kept((SimSolver)solver, bodies, pushed);
+    assert_true(pushed[0] > 1.51);
+  }
 }
 
 // A drop hits the gap between two cubes, a spacing wide: particles there are in reach of both, and press both apart.
@@ -282,8 +298,10 @@ static void momentum_is_kept_between_two(void **state) {
   const SimObstacleDef bodies[2] = {floating(SIM_BOX, 0.3f, 300, 1.5f, 1, 0.875f),
                                     floating(SIM_BOX, 0.3f, 300, 1.5f, 1, 1.225f)};
   double pushed[2];
-  assert_momentum_is_kept(bodies, pushed);
-  assert_true(pushed[0] > 1.51 && pushed[1] > 1.23);
+  for (int solver = 0; solver < 2; solver++) {
+    assert_momentum_is_kept((SimSolver)solver, bodies, pushed);
+    assert_true(pushed[0] > 1.51 && pushed[1] > 1.23);
+  }
 }
 
 static SimWorldDef pool_with(const SimObstacleDef *obstacles, int32_t count) {
@@ -453,6 +471,7 @@ int main(void) {
                                      cmocka_unit_test(odd_bodies_fall_straight),
                                      cmocka_unit_test(a_glass_holds_its_bodies),
                                      cmocka_unit_test(momentum_is_kept),
+                                     cmocka_unit_test(momentum_is_kept_with_friction),
                                      cmocka_unit_test(momentum_is_kept_between_two),
                                      cmocka_unit_test(same_bytes_for_any_threads),
                                      cmocka_unit_test(same_bytes_on_every_instruction_set),

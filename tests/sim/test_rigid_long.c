@@ -13,7 +13,7 @@ typedef struct Rest {
 // A body of `size` is put into a pool of 1.2 × 1.2 m, 0.5 m deep. Its draught in the mean of the last second follows from the
 // volumes of water and body, since the pool is a box: with A_b the body's cross-section and d its draught,
 // level = (V + A_b d)/A and d = level − (y − h/2).
-static Rest float_body(SimShape shape, float size, float density, float y, const float rotation[4], int frames) {
+static Rest float_body_in(SimSolver solver, SimShape shape, float size, float density, float y, const float rotation[4], int frames) {
   SimObstacleDef body = sim_default_obstacle_def();
   body.motion = SIM_FLOATING;
   body.density = density;
@@ -25,6 +25,7 @@ static Rest float_body(SimShape shape, float size, float density, float y, const
   SimWorldDef def = test_def((const float[3]){1.2f, 1.5f, 1.2f}, &block, (const float[3]){1.2f, 0.5f, 1.2f});
   def.obstacles = &body;
   def.obstacle_count = 1;
+  def.solver = solver;
   SimWorld *world = test_create(&def);
   SimFrameBuffer *buffer = sim_frame_buffer_create();
   double volume = sim_world_counts(world).particles * pow(0.05, 3), mean = 0, speed = 0;
@@ -47,7 +48,17 @@ static Rest float_body(SimShape shape, float size, float density, float y, const
   return (Rest){(level - bottom) / h, speed, mean, volume};
 }
 
+static Rest float_body(SimShape shape, float size, float density, float y, const float rotation[4], int frames) {
+  return float_body_in(SIM_SOLVER_PBF, shape, size, density, y, rotation, frames);
+}
+
 static const float upright[4] = {0, 0, 0, 1};
+
+static void half_density_floats_half_deep_in_sph(void **state) {
+  (void)state;
+  Rest rest = float_body_in(SIM_SOLVER_SPH, SIM_BOX, 0.4f, 500, 0.45f, upright, 240);
+  if (fabs(rest.draught - 0.5) > 0.05) fail_msg("draught %g", rest.draught);
+}
 
 static void half_density_floats_half_deep(void **state) {
   (void)state;
@@ -170,7 +181,7 @@ static void a_paddle_makes_waves(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(half_density_floats_half_deep),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(half_density_floats_half_deep_in_sph), cmocka_unit_test(half_density_floats_half_deep),
                                      cmocka_unit_test(half_density_floats_tilted),
                                      cmocka_unit_test(light_body_is_stable),
                                      cmocka_unit_test(heavy_body_sinks),
