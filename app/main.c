@@ -41,7 +41,9 @@ static bool run(Options *options, int argc, char **argv, AppError *error) {
 /// main, so the program starts itself anew with the policy set, unless the user chose one. Should that fail, it is
 /// merely slower.
 static void wait_passively(char **argv) {
-  if (!getenv("OMP_WAIT_POLICY") && setenv("OMP_WAIT_POLICY", "passive", 1) == 0) execv("/proc/self/exe", argv);
+  if (getenv("OMP_WAIT_POLICY") || getenv("GOMP_SPINCOUNT")) return;
+  if (setenv("OMP_WAIT_POLICY", "passive", 1) == 0 && setenv("GOMP_SPINCOUNT", "1000", 1) == 0)
+    execv("/proc/self/exe", argv);
 }
 
 int main(int argc, char **argv) {

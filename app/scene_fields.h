@@ -60,7 +60,7 @@
     "Gravity at the start.") \
   F(S, NUMBER,    time_step,       "s",        "[0, 0.1]",         "0", \
     "Longest substep; 0: adaptive, from cfl.") \
-  F(S, NUMBER,    cfl,             "spacings", "[0.05, 2]",        "0.8", \
+  F(S, NUMBER,    cfl,             "spacings", "[0.05, 2]",        "0.85", \
     "Adaptive step: how far the fastest particle may move in one substep.") \
   F(S, INTEGER,   iterations,      "",         "[1, 100]",         "4", \
     "Density iterations a substep.") \

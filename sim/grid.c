@@ -133,7 +133,9 @@ static void scatter_kernel(int32_t begin, int32_t end, const void *context) {
 
 bool sim_grid_sort(SimCellSort *sort, float *const position[3], int32_t count, float cell_size, int32_t threads) {
   int32_t cells = place_grid(&sort->grid, position, count, cell_size, threads);
+  // Any number of chunks gives the same order; more than there are threads only lengthen the prefix sum.
   int32_t chunks = count / 2048 + 1;
+  if (chunks > threads) chunks = threads;
   if (chunks > MAX_CHUNKS) chunks = MAX_CHUNKS;
   while (chunks > 1 && (int64_t)chunks * cells > 65536 + 8 * (int64_t)count) chunks--;
   if (!sim_reserve((void **)&sort->cell_start, (size_t)cells + 1, sizeof(int32_t)) ||
@@ -204,14 +206,12 @@ int32_t sim_grid_ranges(const SimGrid *grid, const float point[3], float radius,
 
 double sim_grid_candidates(const SimGrid *grid, float radius) {
   int32_t reach = (int32_t)ceilf(radius / grid->cell_size);
-  double sum = 0;
-  for (int32_t z = 0; z < grid->size[2]; z++)
-    for (int32_t y = 0; y < grid->size[1]; y++)
-      for (int32_t x = 0; x < grid->size[0]; x++) {
-        const int32_t *start = grid->cell_start + ((int64_t)z * grid->size[1] + y) * grid->size[0];
-        double n = start[x + 1] - start[x];
-        sum += n * n;
-      }
+  int32_t cells = grid->size[0] * grid->size[1] * grid->size[2];
+  int64_t sum = 0;
+  for (int32_t c = 0; c < cells; c++) {
+    int64_t n = grid->cell_start[c + 1] - grid->cell_start[c];
+    sum += n * n;
+  }
   double width = 2 * reach + 1;
-  return sum * width * width * width;
+  return (double)sum * width * width * width;
 }

@@ -67,10 +67,10 @@ static double squared_derivative(double r, double h) {
 
 // Damping ω of a Jacobi iteration Δp = ∇λ, λ = −ω C/S, on a density ripple of wave number k. The kernel passes the
 // share Ŵ(k) ≈ exp(−a k²), a = 3h²/80 (half its variance along one axis), once in the density and once in Δp, so one
-// iteration changes the ripple by the factor 1 − ω k² Ŵ²/S: at worst (k² = 1/2a) by 1 − ω/(2 a e S). ω makes that −0.7.
+// iteration changes the ripple by the factor 1 − ω k² Ŵ²/S: at worst (k² = 1/2a) by 1 − ω/(2 a e S). ω makes that −0.85.
 static double jacobi_damping(double lattice_gradient, double h) {
   double worst = 1 / (2 * 3 * h * h / 80 * exp(1) * lattice_gradient);
-  return fmin(1, 1.7 / worst);
+  return fmin(1, 1.85 / worst);
 }
 
 static double diffuse_degree(double r, double h) {

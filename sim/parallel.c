@@ -24,7 +24,10 @@ static void run_blocks(int32_t threads, int32_t count, int32_t block, SimKernel 
     for (int32_t b = 0; b < blocks; b++) kernel(b * block, block_end(b * block, block, count), context);
     return;
   }
-#pragma omp parallel for schedule(dynamic, 1) num_threads(threads)
+  // A few blocks in a row: what a thread wrote in one sweep is still in its cache for the next, and a thread that is held
+  // up leaves the rest to the others.
+  int32_t piece = blocks / (16 * threads) + 1;
+#pragma omp parallel for schedule(dynamic, piece) num_threads(threads)
   for (int32_t b = 0; b < blocks; b++) kernel(b * block, block_end(b * block, block, count), context);
 }
 

@@ -125,7 +125,7 @@ typedef struct SimWorldDef {
   float gravity[3];            ///< m/s², default (0, −9.81, 0)
   float time_step;             ///< s, the longest substep; 0 (the default): adaptive, from `cfl`
   float cfl;                   ///< adaptive step: the fastest particle moves at most this many spacings a substep,
-                               ///< default 0.8, range [0.05, 2]
+                               ///< default 0.85, range [0.05, 2]
   int32_t iterations;          ///< density iterations a substep, default 4, range [1, 100]; the last of several moves
                                ///< particles without changing their velocity (solver_pbf.h)
   float viscosity;             ///< XSPH factor c, non-dimensional, default 0.01, range [0, 0.5] (Macklin & Müller, Eq. 17): the

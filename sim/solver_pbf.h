@@ -26,8 +26,8 @@
 //
 // Damped Jacobi. All particles are corrected at once, and each counts in the constraints of its ~32 neighbours, so the
 // corrections add up: with the full λ of Eq. 11 a ripple of 3.4 spacings (kernel of two spacings) is overcorrected 2.9-fold,
-// grows, and keeps the water boiling. λ is therefore scaled by ω, chosen so that the worst ripple is corrected 1.7-fold
-// (see sim_cubic_make for the estimate): 0.6 for a support of two spacings.
+// grows, and keeps the water boiling. λ is therefore scaled by ω, chosen so that the worst ripple is corrected 1.85-fold
+// (see sim_cubic_make for the estimate): 0.64 for a support of two spacings.
 //
 // Scales. ε of Eq. 11 has the unit of |∇C|², 1/m²; the artificial pressure k of Eq. 13 that of λ, m². Both are given here
 // as shares of what the lattice at rest has, S = Σ|∇C|²: ε = ε_rel S and k = k_rel/S. So one pair of numbers serves every

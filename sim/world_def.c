@@ -21,7 +21,7 @@ SimWorldDef sim_default_world_def(void) {
                        .support = 2,
                        .gravity = {0, -9.81f, 0},
                        .time_step = 0,
-                       .cfl = 0.8f,
+                       .cfl = 0.85f,
                        .iterations = 4,
                        .viscosity = 0.01f,
                        .relaxation = 0.1f,

@@ -76,7 +76,7 @@ static void calibration(void **state) {
     assert_true(fabs(sum - 1) < 1e-5);
     double strength = (double)cubic.lattice_gradient * (double)spacings[s] * (double)spacings[s];
     assert_true(fabs(strength - 0.425) < 2e-3);
-    assert_true(fabs((double)cubic.omega - 0.59) < 0.01);
+    assert_true(fabs((double)cubic.omega - 0.64) < 0.01);
   }
   SimCubic wide = sim_cubic_make(0.035f, 2.5f);
   assert_true(fabs((double)wide.lattice_gradient * 0.035 * 0.035 - 0.172) < 2e-3);
