@@ -20,6 +20,7 @@ SCENES = {
     "wave_pool": (0.05, 90, 120), "glass": (0.003, 90, 150), "steps": (0.03, 90, 150), "spouts": (0.025, 90, 150),
     "pontoon": (0.06, 180, 180), "splash": (0.04, 40, 60),
 }  # fmt: skip
+TWENTY_SECONDS = ("wave_pool", "glass", "steps")
 EXACT = {"wave_pool": 65536, "steps": 40000}  # particles of the scene as it is
 
 MEAN_DENSITY_ERROR = 0.01  # of still_pool after 3 s
@@ -27,9 +28,10 @@ MAX_DENSITY_ERROR = 0.05
 ENERGY_SHARE = 1e-4        # kinetic energy per mass, in g·H, after 5 s
 
 
-def simulate(lido, scene, folder, frames, sets):
+def simulate(lido, scene, folder, frames, sets, options=()):
     stats = os.path.join(folder, "stats.jsonl")
     command = [lido, "simulate", scene, "--frames", str(frames), "-q", "--stats", stats, "-o", f"{folder}/p_%05d.ply"]
+    command += options
     for key in sets:
         command += ["--set", key]
     subprocess.run(command, check=True)
@@ -111,6 +113,55 @@ def check_paddles(lido, path, scene, frames, sets, lines):
     assert moved > 1.5 * at_rest, f"{scene['name']}: {moved} J with paddles, {at_rest} J without"
 
 
+def pose(body, time):
+    """Where a body stands: at its place, or on its stroke."""
+    swing = 0
+    if body["motion"] == "scripted" and time > body["start"]:
+        swing = (1 - math.cos(2 * math.pi * (time - body["start"]) / body["period"])) / 2
+    return [p + swing * s for p, s in zip(body["position"], body["stroke"])]
+
+
+def to_body(body, p):
+    """A vector in the body's own axes; the body was turned about x, then y, then z."""
+    p = list(p)
+    for axis in (2, 1, 0):
+        c, s = math.cos(math.radians(body["rotation"][axis])), math.sin(math.radians(body["rotation"][axis]))
+        a, b = (axis + 1) % 3, (axis + 2) % 3
+        p[a], p[b] = c * p[a] + s * p[b], c * p[b] - s * p[a]
+    return p
+
+
+def inside(body, at, point, tolerance):
+    """Whether the point lies deeper than the tolerance in the body."""
+    x, y, z = to_body(body, [p - a for p, a in zip(point, at)])
+    if body["type"] == "sphere":
+        return math.sqrt(x * x + y * y + z * z) < body["radius"] - tolerance
+    half = [size / 2 - tolerance for size in body["size"]]
+    if abs(x) >= half[0] or abs(y) >= half[1] or abs(z) >= half[2]:
+        return False
+    if body["type"] == "box":
+        return True
+    assert body["type"] == "stairs"
+    length, height, _ = body["size"]
+    step = math.floor((x - tolerance + length / 2) / length * body["steps"])
+    return y + tolerance < (step + 1) / body["steps"] * height - height / 2
+
+
+def check_twenty_seconds(lido, path, name, scene):
+    """Twenty seconds of the scene as it is: no particle outside the container, nor deeper than 0.1 spacings in a body."""
+    fps, tolerance = 5, 0.2 * scene["simulation"]["particle_radius"]
+    bodies = [body for body in scene["obstacles"] if body["motion"] in ("static", "scripted")]
+    with tempfile.TemporaryDirectory() as folder:
+        simulate(lido, path, folder, 20 * fps + 1, [], ["--fps", str(fps)])
+        check_container(name, folder, 20 * fps + 1, scene["container"])
+        for frame, file in enumerate(sorted(glob.glob(f"{folder}/p_*.ply"))):
+            at = [pose(body, frame / fps) for body in bodies]
+            for point in zip(*positions(file)):
+                for body, place in zip(bodies, at):
+                    assert not inside(body, place, point, tolerance), f"{name}: {file}: {point} is in {body['name']}"
+    print(f"{name}: 20 s, nothing outside the container or in a body")
+
+
 def main():
     lido, source, full = sys.argv[1], sys.argv[2], sys.argv[3:] == ["long"]
     shipped = {os.path.basename(path)[:-5] for path in glob.glob(os.path.join(source, "configs", "*.json"))}
@@ -128,8 +179,10 @@ def main():
             check_motion(name, folder, lines)
         if name in ("wave_pool", "pontoon"):
             check_paddles(lido, path, scene, frames, sets, lines)
-            if name == "still_pool":
-                check_still_pool(scene, lines)
+        if name == "still_pool":
+            check_still_pool(scene, lines)
+        if full and name in TWENTY_SECONDS:
+            check_twenty_seconds(lido, path, name, scene)
 
 
 if __name__ == "__main__":
