@@ -7,6 +7,7 @@ The ordinary run uses coarser particles and fewer frames, `long` the scenes as t
 """
 import array
 import glob
+import hashlib
 import json
 import math
 import os
@@ -162,6 +163,17 @@ def check_twenty_seconds(lido, path, name, scene):
     print(f"{name}: 20 s, nothing outside the container or in a body")
 
 
+def check_threads(lido, path, name, radius):
+    """The same bytes for any number of threads."""
+    found = set()
+    for threads in (1, 2, 3, 8):
+        with tempfile.TemporaryDirectory() as folder:
+            simulate(lido, path, folder, 45, [f"simulation.particle_radius={radius}"], ["--threads", str(threads)])
+            files = sorted(glob.glob(f"{folder}/p_*.ply"))
+            found.add(hashlib.sha256(b"".join(open(file, "rb").read() for file in files)).digest())
+    assert len(found) == 1, f"{name}: the particles depend on the number of threads"
+
+
 def main():
     lido, source, full = sys.argv[1], sys.argv[2], sys.argv[3:] == ["long"]
     shipped = {os.path.basename(path)[:-5] for path in glob.glob(os.path.join(source, "configs", "*.json"))}
@@ -181,6 +193,8 @@ def main():
             check_paddles(lido, path, scene, frames, sets, lines)
         if name == "still_pool":
             check_still_pool(scene, lines)
+        if full:
+            check_threads(lido, path, name, radius)
         if full and name in TWENTY_SECONDS:
             check_twenty_seconds(lido, path, name, scene)
 
