@@ -71,12 +71,9 @@ static bool overlap(const float a_min[3], const float a_max[3], const float b_mi
   return true;
 }
 
-/// Lattice points of a box filled with particles, as the simulation counts them: at least one layer, and a hundredth of
-/// a spacing forgiven. As a double, because it may be huge.
-static double lattice_count(const float min[3], const float max[3], float radius) {
-  double count = 1;
-  for (int i = 0; i < 3; i++) count *= fmax(1, floor(((double)max[i] - min[i]) / (2.0 * (double)radius) + 0.01));
-  return count;
+static double block_count(const float min[3], const float max[3], float radius) {
+  SimBlockDef block = {{min[0], min[1], min[2]}, {max[0], max[1], max[2]}, {0, 0, 0}, {0, 0, 0}};
+  return sim_block_particles(&block, radius);
 }
 
 static bool too_many(const Check *check, const char *keys, double count) {
@@ -93,7 +90,7 @@ static bool check_place(const Check *check, const char *keys, const float min[3]
 
 static bool check_block(const Check *check, const char *keys, const float min[3], const float max[3]) {
   if (!check_place(check, keys, min, max)) return false;
-  double count = lattice_count(min, max, check->scene->simulation.particle_radius);
+  double count = block_count(min, max, check->scene->simulation.particle_radius);
   return count <= SIM_MAX_PARTICLES || too_many(check, keys, count);
 }
 
@@ -197,7 +194,7 @@ int64_t scene_particle_count(const Scene *scene) {
   float radius = scene->simulation.particle_radius;
   for (int i = 0; i < scene->fluid_count; i++) {
     const SceneFluid *fluid = &scene->fluid[i];
-    if (fluid->type == FLUID_BLOCK) count += lattice_count(fluid->block.min, fluid->block.max, radius);
+    if (fluid->type == FLUID_BLOCK) count += block_count(fluid->block.min, fluid->block.max, radius);
     if (fluid->type == FLUID_DROP) count += drop_count(&fluid->drop, radius);
   }
   return (int64_t)fmin(count, 1e18);

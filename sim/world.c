@@ -154,6 +154,7 @@ static bool start(SimWorld *world, SimError *error) {
     if (sim_fill_block(world, &world->blocks[b], true, error) < 0) return false;
   for (int32_t d = 0; d < world->def.drop_count; d++)
     if (sim_fill_drop(world, &world->drops[d], true, error) < 0) return false;
+  sim_fill_jitter(world);
   world->start_count = world->next_id;
   return sim_world_settle(world, error);
 }
@@ -232,7 +233,7 @@ static double longest_substep(const SimWorld *world) {
   double spacing = (double)world->cubic.spacing, pull = (double)sim_pull(world), longest = world->method->longest(world);
   longest = fmin(longest, world->last_dt > 0 ? GROWTH * world->last_dt : FIRST * longest);
   if (world->def.time_step > 0) longest = fmin(longest, (double)world->def.time_step);
-  double speed = (double)fmaxf(sim_largest_speed(world, world->particles.now.velocity), sim_emit_speed(world, longest)) + pull * longest;
+  double speed = (double)fmaxf(sim_cfl_speed(world), sim_emit_speed(world, longest)) + pull * longest;
   double cfl = speed > 0 ? (double)world->def.cfl * spacing / speed : longest;
   return sim_motion_longest(world, fmin(longest, cfl));
 }

@@ -67,6 +67,9 @@ bool sim_drop_check(const SimDropDef *drop, const char *name, SimError *error);
 /// added, −1 and *error.
 int32_t sim_fill_block(SimWorld *world, const SimBlockDef *block, bool start, SimError *error);
 int32_t sim_fill_drop(SimWorld *world, const SimDropDef *drop, bool start, SimError *error);
+/// Displace every particle at random by up to the Def's jitter, once everything has been filled: a displaced particle would
+/// otherwise take the place of one of the next block.
+void sim_fill_jitter(SimWorld *world);
 
 /// Linear colour of water that was given none.
 extern const float sim_water_colour[3];

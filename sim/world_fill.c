@@ -11,20 +11,71 @@
 typedef struct Lattice {
   int32_t size[3];
   float origin[3]; ///< m, the first point
+  float step[3];   ///< m
   double radius2;  ///< spacings², of the ball around its middle that cuts it, or infinite
 } Lattice;
 
-// As many points as whole spacings fit (a hundredth is forgiven for rounding), at least one in the middle.
+// A block's lattice may be stretched or squeezed by this share along an axis to fill it from side to side: less than what would
+// make particles each other's TOO_NEAR.
+#define STRETCH 0.095
+
+// How far an axis that would take `fit` points is stretched by `count` of them, of which the outer ones lie half a spacing inside;
+// a hundredth of a spacing is forgiven for rounding.
+static double stretch_of(double fit, double count) {
+  return fabs(fit - count) <= 0.01 ? 0 : count < 2 ? INFINITY : (fit - 1) / (count - 1) - 1;
+}
+
+// The numbers of points that an axis may have, whole spacings if no other comes near enough. Returns how many, at most 4.
+static int axis_choices(double fit, double choice[4]) {
+  double whole = floor(fit + 0.01);
+  int count = 0;
+  for (double n = fmax(whole - 1, 1); n <= whole + 2; n++)
+    if (fabs(stretch_of(fit, n)) <= STRETCH) choice[count++] = n;
+  if (count == 0) choice[count++] = fmax(whole, 1);
+  return count;
+}
+
+// Of all choices one whose number of particles is near to the block's volume, so that the water's level is right also where the
+// spacing does not divide the block; of those that are about as near, the most even one. Returns the number of particles.
+static double block_counts(const SimBlockDef *block, float spacing, double counts[3]) {
+  double choice[3][4], fit[3], wanted = 1, best = INFINITY, points = 1;
+  int choices[3];
+  for (int k = 0; k < 3; k++) {
+    fit[k] = ((double)block->max[k] - (double)block->min[k]) / (double)spacing;
+    choices[k] = axis_choices(fit[k], choice[k]);
+    wanted *= fit[k];
+  }
+  for (int z = 0; z < choices[2]; z++)
+    for (int y = 0; y < choices[1]; y++)
+      for (int x = 0; x < choices[0]; x++) {
+        const double n[3] = {choice[0][x], choice[1][y], choice[2][z]};
+        double uneven = 0;
+        for (int k = 0; k < 3; k++) uneven += stretch_of(fit[k], n[k]) * stretch_of(fit[k], n[k]);
+        double cost = uneven > 0 ? fabs(n[0] * n[1] * n[2] / wanted - 1) + 0.1 * uneven : 0;
+        if (cost >= best) continue;
+        best = cost;
+        memcpy(counts, n, sizeof n);
+        points = n[0] * n[1] * n[2];
+      }
+  return points;
+}
+
 static double block_lattice(const SimBlockDef *block, float spacing, Lattice *lattice) {
-  double points = 1;
+  double counts[3] = {1, 1, 1}, points = block_counts(block, spacing, counts);
   lattice->radius2 = INFINITY;
   for (int k = 0; k < 3; k++) {
-    double length = (double)block->max[k] - (double)block->min[k], fit = floor(length / (double)spacing + 0.01);
-    points *= fit < 1 ? 1 : fit;
-    lattice->size[k] = fit < 1 ? 1 : fit > 1e9 ? 1000000000 : (int32_t)fit;
+    double length = (double)block->max[k] - (double)block->min[k], fit = length / (double)spacing;
+    double stretch = stretch_of(fit, counts[k]);
+    lattice->size[k] = counts[k] > 1e9 ? 1000000000 : (int32_t)counts[k];
+    lattice->step[k] = stretch == 0 || fabs(stretch) > STRETCH ? spacing : spacing * (float)(1 + stretch);
     lattice->origin[k] = fit < 1 ? (float)(block->min[k] + length / 2) : block->min[k] + spacing / 2;
   }
   return points;
+}
+
+double sim_block_particles(const SimBlockDef *block, float particle_radius) {
+  double counts[3];
+  return block_counts(block, 2 * particle_radius, counts);
 }
 
 // Points of a ball, in spacings, on a lattice whose middle is a point (gap = 0) or midway between two (½) along each axis.
@@ -56,6 +107,7 @@ static double drop_lattice(const SimDropDef *drop, float spacing, Lattice *latti
   lattice->radius2 = best_cut * best_cut;
   for (int k = 0; k < 3; k++) {
     lattice->size[k] = (int32_t)(2 * (floor(best_cut + best_gap[k]) - best_gap[k])) + 1;
+    lattice->step[k] = spacing;
     lattice->origin[k] = drop->centre[k] - 0.5f * spacing * (float)(lattice->size[k] - 1);
   }
   return best;
@@ -122,10 +174,10 @@ static bool is_free(const SimWorld *world, const Fill *fill, const float point[3
   return sim_boundary_free(&world->boundary, point) && !(fill->among && occupied(world, point));
 }
 
+
+// A free place may touch a wall a little: move it clear.
 static void add(SimWorld *world, const Fill *fill, float point[3]) {
-  float from[3] = {point[0], point[1], point[2]}, jitter = fill->start ? world->def.jitter * world->cubic.spacing : 0;
-  for (int k = 0; k < 3 && jitter > 0; k++)
-    point[k] += jitter * random_share(world->def.seed, (uint64_t)world->particles.count, (uint64_t)k);
+  const float from[3] = {point[0], point[1], point[2]};
   sim_boundary_clamp(&world->boundary, NULL, from, point);
   sim_world_add(world, point, fill->velocity, fill->colour);
 }
@@ -140,7 +192,7 @@ static int32_t go_through(SimWorld *world, const Fill *fill, int32_t room) {
         const int32_t at[3] = {x, y, z};
         float point[3];
         if (!lattice_has(lattice, at)) continue;
-        for (int k = 0; k < 3; k++) point[k] = lattice->origin[k] + world->cubic.spacing * (float)at[k];
+        for (int k = 0; k < 3; k++) point[k] = lattice->origin[k] + lattice->step[k] * (float)at[k];
         if (is_free(world, fill, point) && found++ < room) add(world, fill, point);
       }
   return found;
@@ -189,6 +241,19 @@ int32_t sim_fill_drop(SimWorld *world, const SimDropDef *drop, bool start, SimEr
   Fill fill = {.velocity = drop->velocity, .colour = drop->colour, .start = start};
   fill.points = drop_lattice(drop, world->cubic.spacing, &fill.lattice);
   return run(world, &fill, error);
+}
+
+void sim_fill_jitter(SimWorld *world) {
+  float *const *x = world->particles.now.position, jitter = world->def.jitter * world->cubic.spacing;
+  for (int32_t i = 0; i < world->particles.count && jitter > 0; i++) {
+    float from[3], point[3];
+    for (int k = 0; k < 3; k++) {
+      from[k] = x[k][i];
+      point[k] = from[k] + jitter * random_share(world->def.seed, (uint64_t)i, (uint64_t)k);
+    }
+    sim_boundary_clamp(&world->boundary, NULL, from, point);
+    for (int k = 0; k < 3; k++) x[k][i] = point[k];
+  }
 }
 
 static bool may_add(const SimWorld *world, SimError *error) {

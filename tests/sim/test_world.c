@@ -271,6 +271,60 @@ static void seed_and_jitter(void **state) {
   sim_frame_buffer_destroy(buffer);
 }
 
+// Where the spacing does not divide a block, the particles are still as many as its volume asks for, they reach from side to side, and
+// none of them is nearer to another or to a wall than a tenth less than in the lattice.
+static void blocks_are_filled_by_volume(void **state) {
+  (void)state;
+  const float sizes[4][3] = {{0.525f, 0.525f, 0.525f}, {1.43f, 0.61f, 1.37f}, {0.98f, 0.33f, 0.51f}, {0.5f, 0.5f, 0.5f}};
+  const double tolerance[4] = {0.05, 0.01, 0.02, 1e-6}; // a layer of 10 is a tenth, of 28 a thirtieth
+  SimFrameBuffer *buffer = sim_frame_buffer_create();
+  for (int k = 0; k < 4; k++) {
+    SimBlockDef filled;
+    SimWorldDef def = test_def(sizes[k], &filled, sizes[k]);
+    SimWorld *world = test_create(&def);
+    const SimFrame *frame = test_frame(world, 0, buffer);
+    double share = frame->count * pow(0.05, 3) / (double)(sizes[k][0] * sizes[k][1] * sizes[k][2]), nearest = 1;
+    if (fabs(share - 1) > tolerance[k]) fail_msg("block %d holds %.3f of its volume", k, share);
+    assert_true(frame->count == (int32_t)sim_block_particles(&filled, 0.025f));
+    test_inside_container(frame);
+    for (int axis = 0; axis < 3; axis++) {
+      double low = 2, high = 0;
+      for (int32_t i = 0; i < frame->count; i++) {
+        low = fmin(low, (double)frame->position[3 * i + axis]);
+        high = fmax(high, (double)frame->position[3 * i + axis]);
+      }
+      if (low > 0.0285 || high < (double)sizes[k][axis] - 0.0285) fail_msg("block %d, axis %d: %g to %g", k, axis, low, high);
+    }
+    for (int32_t i = 1; i < frame->count; i++) {
+      double d = 0;
+      for (int axis = 0; axis < 3; axis++)
+        d += pow((double)(frame->position[3 * i + axis] - frame->position[axis]), 2);
+      nearest = fmin(nearest, sqrt(d));
+    }
+    assert_true(nearest > 0.9 * 0.05);
+    sim_world_destroy(world);
+  }
+  sim_frame_buffer_destroy(buffer);
+}
+
+// A particle moved at random must not take the place of one of the next block.
+static void jitter_leaves_nothing_out(void **state) {
+  (void)state;
+  SimWorldDef def = small_def();
+  SimBlockDef blocks[8];
+  for (int k = 0; k < 8; k++)
+    blocks[k] = (SimBlockDef){{0.05f * (float)k, 0, 0}, {0.05f * (float)(k + 1), 0.3f, 0.3f}, {0, 0, 0}, {0, 0, 0}};
+  def.blocks = blocks;
+  def.block_count = 8;
+  for (int k = 0; k < 2; k++) {
+    def.jitter = k == 0 ? 0 : 0.3f;
+    SimWorld *world = test_create(&def);
+    assert_int_equal(sim_world_counts(world).particles, 8 * 6 * 6);
+    assert_int_equal(sim_world_counts(world).left_out, 0);
+    sim_world_destroy(world);
+  }
+}
+
 static void pouring_adds_water_where_there_is_room(void **state) {
   (void)state;
   SimWorldDef def = small_def();
@@ -460,6 +514,8 @@ int main(void) {
       cmocka_unit_test(a_bad_duration_is_refused_without_harm),
       cmocka_unit_test(reset_is_as_good_as_new),
       cmocka_unit_test(seed_and_jitter),
+      cmocka_unit_test(jitter_leaves_nothing_out),
+      cmocka_unit_test(blocks_are_filled_by_volume),
       cmocka_unit_test(pouring_adds_water_where_there_is_room),
       cmocka_unit_test(a_push_acts_near_its_ray_and_once),
       cmocka_unit_test(bad_pushes_and_gravity_are_refused),
