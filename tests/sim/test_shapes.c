@@ -1,87 +1,5 @@
-// Every shape and both containers: distances, shares against a lattice, gradients, and what the clamp keeps out.
-#include "sim_test.h"
-
-#include "reference/meshes.h"
-#include "sim/boundary.h"
-
-#define SPACING 0.05f
-#define CLEARANCE 0.025f
-
-// ---- Bodies to test with ---------------------------------------------------------------------------------------------
-
-typedef struct Zoo {
-  TestMesh ring, plate;
-  SimMeshDistance *fields[2];
-  SimWall wall;
-} Zoo;
-
-// Shapes of the zoo: those of SimShape, then thin, small and degenerate ones.
-enum { SHEET = SIM_SHAPE_COUNT, NEEDLE, ONE_STEP, PLATE_MESH, BEAD, ROUND_CAPSULE, ZOO };
-
-static Zoo zoo_make(void) {
-  Zoo zoo;
-  SimCubic cubic = sim_cubic_make(SPACING, 2);
-  sim_wall_make(&zoo.wall, &cubic);
-  zoo.ring = test_mesh_ring(0.15f, 0.06f, 16, 32);
-  zoo.plate = test_mesh_box((const float[3]){0.2f, 0.0005f, 0.15f});
-  zoo.fields[0] = sim_mesh_distance_create(&zoo.ring.view, &zoo.wall, 2);
-  zoo.fields[1] = sim_mesh_distance_create(&zoo.plate.view, &zoo.wall, 2);
-  assert_non_null(zoo.fields[0]);
-  assert_non_null(zoo.fields[1]);
-  return zoo;
-}
-
-static void zoo_free(Zoo *zoo) {
-  for (int n = 0; n < 2; n++) sim_mesh_distance_destroy(zoo->fields[n]);
-  test_mesh_free(&zoo->ring);
-  test_mesh_free(&zoo->plate);
-}
-
-static void turn(SimBody *body, uint64_t *seed, float most) {
-  SimObstacle pose = {.shape = SIM_SPHERE, .size = {1}};
-  for (int k = 0; k < 3; k++) pose.rotation[k] = most * (float)(2 * test_random(seed) - 1);
-  pose.rotation[3] = 1;
-  SimBody turned = sim_body_make(&pose, NULL);
-  memcpy(body->rotation, turned.rotation, sizeof body->rotation);
-}
-
-static SimBody zoo_body(const Zoo *zoo, int which) {
-  static const struct {
-    SimShape shape;
-    float size[3];
-    int32_t steps;
-  } kinds[ZOO] = {[SIM_BOX] = {SIM_BOX, {0.3f, 0.2f, 0.25f}, 1},
-                  [SIM_SPHERE] = {SIM_SPHERE, {0.36f}, 1},
-                  [SIM_CYLINDER] = {SIM_CYLINDER, {0.28f, 0.3f}, 1},
-                  [SIM_CAPSULE] = {SIM_CAPSULE, {0.2f, 0.4f}, 1},
-                  [SIM_STAIRS] = {SIM_STAIRS, {0.4f, 0.3f, 0.25f}, 4},
-                  [SIM_MESH] = {SIM_MESH, {0}, 1},
-                  [SHEET] = {SIM_BOX, {0.4f, 0.001f, 0.4f}, 1},
-                  [NEEDLE] = {SIM_BOX, {0.4f, 1e-4f, 1e-4f}, 1},
-                  [ONE_STEP] = {SIM_STAIRS, {0.3f, 0.02f, 0.25f}, 1},
-                  [PLATE_MESH] = {SIM_MESH, {0}, 1},
-                  [BEAD] = {SIM_SPHERE, {0.02f}, 1},
-                  [ROUND_CAPSULE] = {SIM_CAPSULE, {0.2f, 0.2f}, 1}};
-  SimObstacle obstacle = {.shape = kinds[which].shape,
-                          .steps = kinds[which].steps,
-                          .position = {0.5f, 0.45f, 0.55f},
-                          .rotation = {0.3f, -0.2f, 0.1f, 0.9f}};
-  memcpy(obstacle.size, kinds[which].size, sizeof obstacle.size);
-  return sim_body_make(&obstacle, which == SIM_MESH ? zoo->fields[0] : which == PLATE_MESH ? zoo->fields[1] : NULL);
-}
-
-static SimBoundary tank(const Zoo *zoo, SimContainerShape shape, const SimBody *bodies, int32_t count) {
-  return (SimBoundary){.container = {{0, 0, 0}, {1, 1, 1}, shape},
-                       .friction = 0.25f,
-                       .clearance = CLEARANCE,
-                       .body_count = count,
-                       .bodies = bodies,
-                       .wall = zoo->wall};
-}
-
-static void random_point(uint64_t *seed, float point[3]) {
-  for (int k = 0; k < 3; k++) point[k] = (float)test_random(seed);
-}
+// Every shape and both containers: distances, shares against a lattice, and gradients.
+#include "zoo.h"
 
 // ---- Distances -------------------------------------------------------------------------------------------------------
 
@@ -161,7 +79,7 @@ static void boxes_around_bodies_hold_them(void **state) {
     sim_body_box(&body, low, high);
     for (int n = 0; n < 20000; n++) {
       float point[3], normal[3], d2 = 0;
-      random_point(&seed, point);
+      zoo_random_point(&seed, point);
       float gap = sim_body_distance(&body, point, normal);
       if (body.mesh && fabsf(gap) > 0.02f) continue; // interpolated
       for (int k = 0; k < 3; k++) {
@@ -251,7 +169,7 @@ static void shares_are_those_of_the_kernel(void **state) {
     int count = 0;
     for (int n = 0; n < 1000000 && count < 60; n++) {
       float point[3], normal[3], g[3];
-      random_point(&seed, point);
+      zoo_random_point(&seed, point);
       float gap = sim_body_distance(&body, point, normal);
       if (gap < 0.9f * CLEARANCE || gap > 1.2f * SPACING) continue;
       double error =
@@ -273,13 +191,13 @@ static void a_glass_has_the_share_of_what_is_outside(void **state) {
   uint64_t seed = 5;
   const float diameters[4] = {1, 0.5f, 0.25f, 0.1f};
   for (int n = 0; n < 4; n++) {
-    SimBoundary glass = tank(&zoo, SIM_CONTAINER_GLASS, NULL, 0);
+    SimBoundary glass = zoo_tank(&zoo, SIM_CONTAINER_GLASS, NULL, 0);
     glass.container.max[0] = diameters[n]; // the shorter side
     double worst = 0;
     for (int tries = 0; tries < 100; tries++) {
       float point[3], from[3] = {0.5f * diameters[n], 0.5f, 0.5f};
       SimSolid solid;
-      random_point(&seed, point);
+      zoo_random_point(&seed, point);
       point[0] = from[0] + diameters[n] * (point[0] - 0.5f) * 1.1f,
       point[2] = 0.5f + diameters[n] * (point[2] - 0.5f) * 1.1f;
       sim_boundary_clamp(&glass, NULL, from, point);
@@ -306,7 +224,7 @@ static void a_glass_bends_the_wall_of_a_lattice(void **state) {
   uint64_t seed = 6;
   for (int n = 0; n < 9; n++) {
     float radius = n < 3 ? 0.5f : n < 6 ? 0.25f : 0.125f, s = CLEARANCE * (1 + 0.5f * (float)(n % 3)), slope;
-    SimBoundary glass = tank(&zoo, SIM_CONTAINER_GLASS, NULL, 0);
+    SimBoundary glass = zoo_tank(&zoo, SIM_CONTAINER_GLASS, NULL, 0);
     glass.container.max[0] = 2 * radius;
     const float point[3] = {2 * radius - s, 0.5f, 0.5f};
     SimSolid solid;
@@ -338,7 +256,7 @@ static void bodies_on_the_floor_are_not_counted_twice(void **state) {
     SimObstacle obstacle = {
         .shape = SIM_BOX, .size = {0.3f, 0.3f, 0.3f}, .position = {0.5f, heights[n], 0.5f}, .rotation = {0, 0, 0, 1}};
     SimBody body = sim_body_make(&obstacle, NULL);
-    SimBoundary boundary = tank(&zoo, SIM_CONTAINER_BOX, &body, 1);
+    SimBoundary boundary = zoo_tank(&zoo, SIM_CONTAINER_BOX, &body, 1);
     const float points[3][3] = {{0.325f, CLEARANCE, 0.5f}, {0.325f, 0.06f, 0.5f}, {0.325f, CLEARANCE, 0.325f}};
     for (int p = 0; p < 3; p++) {
       SimSolid solid;
@@ -362,7 +280,7 @@ static void inner_corners_of_stairs_are_corners(void **state) {
                           .rotation = {0, 0, 0, 1},
                           .steps = 4};
   SimBody body = sim_body_make(&obstacle, NULL);
-  SimBoundary with = tank(&zoo, SIM_CONTAINER_BOX, &body, 1), empty = tank(&zoo, SIM_CONTAINER_BOX, NULL, 0);
+  SimBoundary with = zoo_tank(&zoo, SIM_CONTAINER_BOX, &body, 1), empty = zoo_tank(&zoo, SIM_CONTAINER_BOX, NULL, 0);
   for (int n = 0; n < 9; n++) {
     // On the second tread (its top at 0.5), before the riser at x = 0.5.
     float x = 0.02f + 0.02f * (float)(n % 3), y = 0.02f + 0.02f * (float)(n / 3);
@@ -406,12 +324,12 @@ static void gradients_are_those_of_the_shares(void **state) {
     // A second body beside the first, both sunk into the floor: every product and every sum has its part.
     SimBody bodies[2] = {zoo_body(&zoo, which % ZOO), zoo_body(&zoo, SIM_BOX)};
     bodies[0].position[1] = 0.1f, bodies[1].position[1] = 0.02f, bodies[1].position[0] = 0.75f;
-    SimBoundary boundary = tank(&zoo, which < ZOO ? SIM_CONTAINER_BOX : SIM_CONTAINER_GLASS, bodies, 2);
+    SimBoundary boundary = zoo_tank(&zoo, which < ZOO ? SIM_CONTAINER_BOX : SIM_CONTAINER_GLASS, bodies, 2);
     char what[32];
     snprintf(what, sizeof what, "case %d", which);
     for (int n = 0, near = 0; near < 150 && n < 300000; n++) {
       float point[3], normal[3];
-      random_point(&seed, point);
+      zoo_random_point(&seed, point);
       point[1] *= 0.3f;
       if (!sim_boundary_free(&boundary, point)) continue;
       if (n % 4 && sim_body_distance(&bodies[0], point, normal) > 0.08f) continue;
@@ -432,12 +350,12 @@ static void a_floating_body_has_its_part(void **state) {
   bodies[1].floats = bodies[1].moves = bodies[2].floats = bodies[2].moves = true;
   bodies[1].friction = 0.5f, bodies[2].friction = 1;
   for (int k = 0; k < 3; k++) bodies[1].velocity[k] = (float)(k + 1), bodies[2].spin[k] = (float)(3 - k);
-  SimBoundary boundary = tank(&zoo, SIM_CONTAINER_BOX, bodies, 3);
+  SimBoundary boundary = zoo_tank(&zoo, SIM_CONTAINER_BOX, bodies, 3);
   int seen[3] = {0, 0, 0};
   for (int n = 0; n < 20000; n++) {
     float point[3], g[3], share[3];
     SimSolid solid, without;
-    random_point(&seed, point);
+    zoo_random_point(&seed, point);
     if (!sim_boundary_free(&boundary, point)) continue;
     sim_boundary_solid(&boundary, NULL, point, &solid);
     for (int b = 0; b < 3; b++) share[b] = sim_body_solid(&bodies[b], &zoo.wall, point, g);
@@ -483,326 +401,6 @@ static void a_floating_body_has_its_part(void **state) {
   zoo_free(&zoo);
 }
 
-// ---- The clamp -------------------------------------------------------------------------------------------------------
-
-static void must_be_outside(const SimBoundary *boundary, const float point[3], int which, const char *what) {
-  const float slack = 1e-5f;
-  for (int k = 0; k < 3; k++) assert_true(point[k] >= -slack && point[k] <= 1 + slack);
-  if (boundary->container.shape == SIM_CONTAINER_GLASS)
-    assert_true(hypotf(point[0] - 0.5f, point[2] - 0.5f) <= 0.5f + slack);
-  for (int32_t b = 0; b < boundary->body_count; b++) {
-    float normal[3], gap = sim_body_distance(&boundary->bodies[b], point, normal);
-    if (gap < -0.02f * SPACING) fail_msg("%s: shape %d: %.4f spacings inside", what, which, (double)(-gap / SPACING));
-  }
-}
-
-static bool random_free(const SimBoundary *boundary, uint64_t *seed, float point[3]) {
-  for (int n = 0; n < 1000; n++) {
-    random_point(seed, point);
-    if (sim_boundary_free(boundary, point)) return true;
-  }
-  return false;
-}
-
-// Moves up to ten spacings long, also far out of the container, past every shape in every pose.
-static void moves_end_outside_of_resting_bodies(void **state) {
-  (void)state;
-  Zoo zoo = zoo_make();
-  uint64_t seed = 9;
-  for (int which = 0; which < ZOO; which++) {
-    SimBody bodies[2] = {zoo_body(&zoo, which), zoo_body(&zoo, (which + 1) % ZOO)};
-    bodies[0].position[0] = 0.3f, bodies[1].position[0] = 0.7f;
-    for (int pose = 0; pose < 12; pose++) {
-      for (int b = 0; b < 2; b++) turn(&bodies[b], &seed, 2);
-      SimBoundary boundary = tank(&zoo, pose % 2 ? SIM_CONTAINER_GLASS : SIM_CONTAINER_BOX, bodies, 2);
-      for (int n = 0; n < 150; n++) {
-        float from[3], to[3], reach = n % 3 == 0 ? 2 : n % 3 == 1 ? 10 * SPACING : 2 * SPACING;
-        if (!random_free(&boundary, &seed, from)) continue;
-        for (int k = 0; k < 3; k++) to[k] = from[k] + reach * (float)(2 * test_random(&seed) - 1);
-        assert_int_equal(sim_boundary_clamp(&boundary, NULL, from, to), -1);
-        must_be_outside(&boundary, to, which, "at rest");
-      }
-    }
-  }
-  zoo_free(&zoo);
-}
-
-// The sides of a thin wall, told by a particle's place in the wall's own axes.
-static float above(const SimBody *body, const float position[3], const float rotation[9], const float point[3]) {
-  const float d[3] = {point[0] - position[0], point[1] - position[1], point[2] - position[2]};
-  float local[3];
-  (void)body;
-  sim_to_local(rotation, d, local);
-  return local[1];
-}
-
-// Sheets much thinner than a particle, as a box and as a mesh, spun and thrown through the water by several spacings a
-// substep, while particles shoot at them: nothing gets to the other side except around the rim.
-static void thin_sheets_do_not_leak_when_they_move(void **state) {
-  (void)state;
-  Zoo zoo = zoo_make();
-  uint64_t seed = 10;
-  const int kinds[2] = {SHEET, PLATE_MESH};
-  for (int n = 0; n < 20000; n++) {
-    SimBody sheet = zoo_body(&zoo, kinds[n % 2]);
-    for (int k = 0; k < 3; k++) sheet.position[k] = 0.5f;
-    SimBoundary boundary = tank(&zoo, SIM_CONTAINER_BOX, &sheet, 1);
-    boundary.container = (SimContainer){{-5, -5, -5}, {5, 5, 5}, SIM_CONTAINER_BOX};
-    sheet.moves = sheet.floats = true;
-    turn(&sheet, &seed, 2);
-    memcpy(sheet.old_rotation, sheet.rotation, sizeof sheet.rotation);
-    memcpy(sheet.old_position, sheet.position, sizeof sheet.position);
-    if (n % 3 == 0) turn(&sheet, &seed, 0.3f);
-    for (int k = 0; k < 3; k++) sheet.position[k] += 3 * SPACING * (float)(2 * test_random(&seed) - 1);
-    // Near the middle of the sheet, in its old axes, on a known side.
-    float local[3], from[3], to[3];
-    for (int k = 0; k < 3; k++) local[k] = 0.08f * (float)(2 * test_random(&seed) - 1);
-    local[1] = copysignf(0.0225f + fabsf(local[1]), local[1]);
-    sim_to_world(sheet.old_rotation, local, from);
-    for (int k = 0; k < 3; k++) from[k] += sheet.old_position[k];
-    for (int k = 0; k < 3; k++) to[k] = from[k] + 4 * SPACING * (float)(2 * test_random(&seed) - 1);
-    sim_boundary_clamp(&boundary, NULL, from, to);
-    must_be_outside(&boundary, to, kinds[n % 2], "moving sheet");
-    float side = above(&sheet, sheet.position, sheet.rotation, to), end[3], d[3];
-    for (int k = 0; k < 3; k++) d[k] = to[k] - sheet.position[k];
-    sim_to_local(sheet.rotation, d, end);
-    bool beside = fabsf(end[0]) > 0.19f || fabsf(end[2]) > 0.14f;
-    if (!beside && side * local[1] <= 0)
-      fail_msg("%d: went through the sheet from %g to %g", n, (double)local[1], (double)side);
-  }
-  zoo_free(&zoo);
-}
-
-// Every shape jumps and turns by up to three spacings onto resting and moving particles.
-static void moving_bodies_push_particles_ahead(void **state) {
-  (void)state;
-  Zoo zoo = zoo_make();
-  uint64_t seed = 11;
-  for (int which = 0; which < ZOO; which++)
-    for (int n = 0; n < 3000; n++) {
-      SimBody body = zoo_body(&zoo, which);
-      for (int k = 0; k < 3; k++) body.position[k] = 0.5f;
-      turn(&body, &seed, 2);
-      SimBoundary boundary = tank(&zoo, n % 2 ? SIM_CONTAINER_GLASS : SIM_CONTAINER_BOX, &body, 1);
-      float from[3], to[3];
-      if (!random_free(&boundary, &seed, from)) continue;
-      body.moves = body.floats = true;
-      memcpy(body.old_rotation, body.rotation, sizeof body.rotation);
-      memcpy(body.old_position, body.position, sizeof body.position);
-      for (int k = 0; k < 3; k++) body.position[k] += 0.15f * (float)(2 * test_random(&seed) - 1);
-      for (int k = 0; k < 3; k++) to[k] = from[k] + (n % 4 ? SPACING * (float)(2 * test_random(&seed) - 1) : 0);
-      const float wanted[3] = {to[0], to[1], to[2]};
-      int32_t say = sim_boundary_clamp(&boundary, NULL, from, to);
-      must_be_outside(&boundary, to, which, "moving body");
-      float normal[3];
-      if (sim_body_distance(&body, wanted, normal) < 0) assert_int_equal(say, 0);
-    }
-  zoo_free(&zoo);
-}
-
-// A paddle comes up to the wall and stops 0.3 spacings before it: the particle between is in neither.
-static void a_paddle_leaves_no_particle_in_itself_or_the_wall(void **state) {
-  (void)state;
-  Zoo zoo = zoo_make();
-  SimObstacle obstacle = {
-      .shape = SIM_BOX, .size = {0.02f, 0.8f, 0.8f}, .position = {0.5f, 0.5f, 0.5f}, .rotation = {0, 0, 0, 1}};
-  SimBody paddle = sim_body_make(&obstacle, NULL);
-  SimBoundary boundary = tank(&zoo, SIM_CONTAINER_BOX, &paddle, 1);
-  paddle.moves = true;
-  float point[3] = {0.7f, 0.5f, 0.5f}, step = 0.005f;
-  for (float x = 0.5f + step; x < 1 - 0.01f - 0.3f * SPACING; x += step) {
-    memcpy(paddle.old_position, paddle.position, sizeof paddle.position);
-    paddle.position[0] = x;
-    float from[3] = {point[0], point[1], point[2]};
-    sim_boundary_clamp(&boundary, NULL, from, point);
-    must_be_outside(&boundary, point, SIM_BOX, "paddle");
-    assert_true(point[0] > x);
-  }
-  // It closes the gap: there is no place, and the particle stays in the container.
-  memcpy(paddle.old_position, paddle.position, sizeof paddle.position);
-  paddle.position[0] = 0.991f;
-  float from[3] = {point[0], point[1], point[2]};
-  sim_boundary_clamp(&boundary, NULL, from, point);
-  for (int k = 0; k < 3; k++) assert_true(point[k] >= 0 && point[k] <= 1);
-  zoo_free(&zoo);
-}
-
-// Friction is the solver's: sliding along a body, nothing of the way along it is lost.
-static void moves_slide_along_bodies(void **state) {
-  (void)state;
-  Zoo zoo = zoo_make();
-  SimObstacle obstacle = {
-      .shape = SIM_BOX, .size = {0.8f, 0.2f, 0.8f}, .position = {0.5f, 0.3f, 0.5f}, .rotation = {0, 0, 0, 1}};
-  SimBody block = sim_body_make(&obstacle, NULL);
-  SimBoundary boundary = tank(&zoo, SIM_CONTAINER_BOX, &block, 1);
-  float from[3] = {0.3f, 0.425f, 0.5f}, to[3] = {0.45f, 0.33f, 0.55f}; // into the top of the block
-  sim_boundary_clamp(&boundary, NULL, from, to);
-  assert_true(fabsf(to[0] - 0.45f) < 1e-4f && fabsf(to[2] - 0.55f) < 1e-4f && fabsf(to[1] - 0.425f) < 1e-4f);
-  zoo_free(&zoo);
-}
-
-static void nan_and_the_infinite_pass_or_end_inside(void **state) {
-  (void)state;
-  Zoo zoo = zoo_make();
-  for (int which = 0; which < ZOO; which++) {
-    SimBody body = zoo_body(&zoo, which);
-    SimBoundary boundary = tank(&zoo, which % 2 ? SIM_CONTAINER_GLASS : SIM_CONTAINER_BOX, &body, 1);
-    float from[3] = {0.5f, 0.9f, 0.5f}, to[3] = {0.5f, NAN, 0.5f};
-    assert_int_equal(sim_boundary_clamp(&boundary, NULL, from, to), -1);
-    assert_true(isnan(to[1]));
-    float far[3] = {0.5f, -INFINITY, 0.5f};
-    sim_boundary_clamp(&boundary, NULL, from, far);
-    must_be_outside(&boundary, far, which, "infinite");
-    SimSolid solid;
-    sim_boundary_solid(&boundary, NULL, (const float[3]){NAN, NAN, NAN}, &solid); // must come back
-    float lost[3] = {NAN, 0.5f, 0.5f}, next[3] = {0.5f, 0.5f, 0.5f};
-    sim_boundary_clamp(&boundary, NULL, lost, next);
-  }
-  zoo_free(&zoo);
-}
-
-// ---- What is near ----------------------------------------------------------------------------------------------------
-
-// For random boxes among many moving bodies: where nothing is said to be near, nothing is; else the result is the same
-// as that of a look at everything, to the bit.
-static void what_is_selected_is_all_there_is(void **state) {
-  (void)state;
-  Zoo zoo = zoo_make();
-  uint64_t seed = 12;
-  static SimBody bodies[400], before[400];
-  static SimNear near;
-  for (int b = 0; b < 400; b++) {
-    bodies[b] = zoo_body(&zoo, b % ZOO);
-    turn(&bodies[b], &seed, 2);
-    bodies[b].moves = b % 3 == 0;
-    memcpy(bodies[b].old_rotation, bodies[b].rotation, sizeof bodies[b].rotation);
-    for (int k = 0; k < 3; k++) {
-      bodies[b].old_position[k] = bodies[b].position[k] = 10 * (float)test_random(&seed);
-      if (bodies[b].moves) bodies[b].position[k] += 0.1f * (float)(2 * test_random(&seed) - 1);
-    }
-    if (bodies[b].moves) turn(&bodies[b], &seed, 2);
-    before[b] = bodies[b];
-    memcpy(before[b].position, bodies[b].old_position, sizeof bodies[b].position);
-    memcpy(before[b].rotation, bodies[b].old_rotation, sizeof bodies[b].rotation);
-  }
-  SimBoundary boundary = tank(&zoo, SIM_CONTAINER_BOX, bodies, 400), start = boundary;
-  start.bodies = before;
-  int nothing = 0, something = 0;
-  for (int n = 0; n < 4000; n++) {
-    boundary.container = (SimContainer){{0, 0, 0}, {10, 10, 10}, n % 2 ? SIM_CONTAINER_GLASS : SIM_CONTAINER_BOX};
-    start.container = boundary.container;
-    float low[3], high[3], margin = 0.1f;
-    for (int k = 0; k < 3; k++)
-      low[k] = 10 * (float)test_random(&seed), high[k] = low[k] + 0.3f * (float)test_random(&seed);
-    bool found = sim_boundary_select(&boundary, low, high, margin, &near);
-    *(found ? &something : &nothing) += 1;
-    for (int tries = 0; tries < 8; tries++) {
-      float point[3], to[3], other[3];
-      SimSolid a, b;
-      for (int k = 0; k < 3; k++) {
-        point[k] = low[k] + (high[k] - low[k]) * (float)test_random(&seed);
-        to[k] = other[k] = point[k] + margin * (float)(2 * test_random(&seed) - 1);
-        to[k] = other[k] = fminf(fmaxf(to[k], low[k] - margin), high[k] + margin);
-      }
-      const float wanted[3] = {to[0], to[1], to[2]};
-      sim_boundary_solid(&boundary, NULL, point, &a);
-      if (!sim_boundary_free(&start, point)) {
-        assert_true(found);
-        continue;
-      }
-      int32_t say = sim_boundary_clamp(&boundary, NULL, point, to);
-      if (!found) {
-        assert_true(a.share == 0 && say == -1 && memcmp(to, wanted, sizeof to) == 0);
-        continue;
-      }
-      sim_boundary_solid(&boundary, &near, point, &b);
-      assert_memory_equal(&a, &b, sizeof a);
-      assert_int_equal(sim_boundary_clamp(&boundary, &near, point, other), say);
-      assert_memory_equal(to, other, sizeof to);
-    }
-  }
-  assert_true(nothing > 100 && something > 100);
-  // More than a list holds: then all are looked at.
-  for (int b = 0; b < 400; b++) memcpy(bodies[b].position, bodies[0].position, sizeof bodies[b].position);
-  assert_true(sim_boundary_select(&boundary, bodies[0].position, bodies[0].position, 0, &near));
-  assert_int_equal(near.count, -1);
-  zoo_free(&zoo);
-}
-
-// ---- Starting --------------------------------------------------------------------------------------------------------
-
-static void nothing_starts_in_a_body_or_a_wall(void **state) {
-  (void)state;
-  Zoo zoo = zoo_make();
-  const TestMesh *meshes[2] = {&zoo.ring, &zoo.plate};
-  for (int which = 0; which < 2 * ZOO; which++) {
-    SimBlockDef block;
-    SimWorldDef def = test_def((const float[3]){1, 1, 1}, &block, (const float[3]){1, 1, 1});
-    SimBody body = zoo_body(&zoo, which % ZOO);
-    SimObstacleDef solid = sim_default_obstacle_def();
-    solid.body = (SimObstacle){.shape = body.shape,
-                               .position = {0.5f, 0.45f, 0.55f},
-                               .rotation = {0.3f, -0.2f, 0.1f, 0.9f},
-                               .steps = body.steps,
-                               .mesh = body.mesh ? &meshes[which % ZOO == PLATE_MESH]->view : NULL};
-    for (int k = 0; k < 3; k++) solid.body.size[k] = 2 * body.half[k];
-    def.obstacle_count = 1, def.obstacles = &solid;
-    def.container.shape = which < ZOO ? SIM_CONTAINER_BOX : SIM_CONTAINER_GLASS;
-    SimWorld *world = test_create(&def);
-    SimFrameBuffer *buffer = sim_frame_buffer_create();
-    const SimFrame *frame = test_frame(world, 0, buffer);
-    SimBoundary boundary = tank(&zoo, def.container.shape, &body, 1);
-    for (int32_t i = 0; i < frame->count; i++) assert_true(sim_boundary_free(&boundary, frame->position + 3 * i));
-    assert_int_equal(frame->count + sim_world_counts(world).left_out, 8000);
-    assert_true(frame->count > (which < ZOO ? 7000 : 5000) && frame->count <= 8000);
-    sim_frame_buffer_destroy(buffer);
-    sim_world_destroy(world);
-  }
-  zoo_free(&zoo);
-}
-
-// ---- Water -----------------------------------------------------------------------------------------------------------
-
-// Water falls into a glass with a flight of stairs, a capsule and a mesh in it and comes to rest: no particle is in a
-// body or out of the glass, and the density beside the walls is that of the water.
-static void water_rests_in_a_glass_of_obstacles(void **state) {
-  (void)state;
-  Zoo zoo = zoo_make();
-  SimBlockDef block;
-  SimWorldDef def = test_def((const float[3]){1, 1, 1}, &block, (const float[3]){1, 0.5f, 1});
-  SimObstacleDef solids[3] = {sim_default_obstacle_def(), sim_default_obstacle_def(), sim_default_obstacle_def()};
-  const SimObstacle shapes[3] = {
-      {.shape = SIM_STAIRS,
-       .size = {0.3f, 0.3f, 0.3f},
-       .position = {0.7f, 0.15f, 0.5f},
-       .rotation = {0, 0, 0, 1},
-       .steps = 3},
-      {.shape = SIM_CAPSULE, .size = {0.15f, 0.35f}, .position = {0.3f, 0.25f, 0.6f}, .rotation = {0.2f, 0, 0, 1}},
-      {.shape = SIM_MESH, .position = {0.4f, 0.3f, 0.35f}, .rotation = {0, 0, 0.4f, 1}, .mesh = &zoo.ring.view}};
-  SimBody bodies[3];
-  for (int b = 0; b < 3; b++) {
-    solids[b].body = shapes[b];
-    bodies[b] = sim_body_make(&shapes[b], b == 2 ? zoo.fields[0] : NULL);
-  }
-  def.obstacle_count = 3, def.obstacles = solids;
-  def.container.shape = SIM_CONTAINER_GLASS;
-  SimWorld *world = test_create(&def);
-  SimFrameBuffer *buffer = sim_frame_buffer_create();
-  SimBoundary boundary = tank(&zoo, SIM_CONTAINER_GLASS, bodies, 3);
-  for (int second = 0; second < 2; second++) {
-    test_advance(world, 60);
-    const SimFrame *frame = test_frame(world, 0, buffer);
-    for (int32_t i = 0; i < frame->count; i++) must_be_outside(&boundary, frame->position + 3 * i, 0, "at rest");
-  }
-  SimMeasures measures = sim_world_measures(world);
-  print_message("density off by %.4f on the average, %.4f at most; speed %.3f m/s at most\n",
-                measures.mean_density_error, measures.max_density_error, measures.max_speed);
-  assert_true(measures.mean_density_error < 0.01 && measures.max_density_error < 0.05);
-  sim_frame_buffer_destroy(buffer);
-  sim_world_destroy(world);
-  zoo_free(&zoo);
-}
-
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(stairs_have_the_distance_of_their_triangles),
@@ -816,15 +414,6 @@ int main(void) {
       cmocka_unit_test(inner_corners_of_stairs_are_corners),
       cmocka_unit_test(gradients_are_those_of_the_shares),
       cmocka_unit_test(a_floating_body_has_its_part),
-      cmocka_unit_test(moves_end_outside_of_resting_bodies),
-      cmocka_unit_test(thin_sheets_do_not_leak_when_they_move),
-      cmocka_unit_test(moving_bodies_push_particles_ahead),
-      cmocka_unit_test(a_paddle_leaves_no_particle_in_itself_or_the_wall),
-      cmocka_unit_test(moves_slide_along_bodies),
-      cmocka_unit_test(nan_and_the_infinite_pass_or_end_inside),
-      cmocka_unit_test(what_is_selected_is_all_there_is),
-      cmocka_unit_test(nothing_starts_in_a_body_or_a_wall),
-      cmocka_unit_test(water_rests_in_a_glass_of_obstacles),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
