@@ -60,11 +60,11 @@
     "Gravity at the start.") \
   F(S, NUMBER,    time_step,       "s",        "[0, 0.1]",         "0", \
     "Longest substep; 0: adaptive, from cfl.") \
-  F(S, NUMBER,    cfl,             "spacings", "[0.05, 2]",        "0.85", \
-    "Adaptive step: how far the fastest particle may move in one substep.") \
+  F(S, NUMBER,    cfl,             "spacings", "[0.05, 2]",        "1.1", \
+    "Adaptive step: how far the fastest particle may move in one substep; in free flight half as far again.") \
   F(S, INTEGER,   iterations,      "",         "[1, 100]",         "4", \
     "Density iterations a substep.") \
-  F(S, NUMBER,    viscosity,       "",         "[0, 0.5]",         "0.01", \
+  F(S, NUMBER,    viscosity,       "",         "[0, 0.5]",         "0.04", \
     "XSPH factor: how much neighbours share their velocity.") \
   F(S, NUMBER,    kinematic_viscosity, "m²/s", "[0, 10]",          "1e-6", \
     "How thick the liquid is; the default is water's.") \

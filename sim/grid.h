@@ -42,7 +42,7 @@ typedef struct SimRange {
 
 /// Index of the cell along one axis, clamped to the grid. Double precision, so that 10⁷ cells in a row still work.
 static inline int32_t sim_grid_index(const SimGrid *grid, int axis, double coordinate) {
-  double t = (coordinate - (double)grid->origin[axis]) / (double)grid->cell_size;
+  double t = (coordinate - (double)grid->origin[axis]) * (1 / (double)grid->cell_size);
   return t > 0 ? t < grid->size[axis] - 1 ? (int32_t)t : grid->size[axis] - 1 : 0;
 }
 

@@ -38,7 +38,8 @@ typedef struct SimParticles {
   float *work;             ///< (count, 4), where `with_work`: another one that the stages name
   bool with_work;
   float *density;          ///< share of the rest density in a settled state; pbf keeps inherited compression here meanwhile
-  float *solid;            ///< (count, 4): gradient of the walls' share of the density, 1/m, and the share itself
+  float *solid;            ///< (count, 4): gradient of the walls' share of the density, 1/m, where a chunk is near something, and
+                           ///< the share itself; for a sweep, tensors stand in the gradient's place (wide/shear.h)
   uint8_t *near;           ///< (chunks): SIM_NEAR_… of each chunk
 } SimParticles;
 

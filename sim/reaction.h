@@ -1,7 +1,7 @@
 // What the water gives to floating bodies: the opposite of everything that these bodies do to particles.
 //
 // Whatever changes a particle's velocity on behalf of a floating body, the pressure term κ λ_i ∇f of its share f of the
-// particle's density or the hard clamp, is noted per particle as a displacement, the change of velocity times dt. After each
+// particle's density, what it adds along its surface, or the hard clamp, is noted per particle as a displacement, the change of velocity times dt. After each
 // sweep over the particles sim_reaction_collect turns the notes into impulses −m Δx/dt at the particles' places and adds them
 // up per body: one note is one equal and opposite push, so fluid and bodies together keep their momentum to rounding. (The
 // pressure between two particles is theirs alone and needs no note.)
@@ -35,6 +35,13 @@ typedef struct SimReaction {
   SimGiven *given;      ///< (floating bodies): what was given since sim_reaction_clear
 } SimReaction;
 
+/// What walls and bodies together did to a particle: it was moved by pressure · gradient + aside.
+typedef struct SimAnswer {
+  float pressure;              ///< m²
+  float aside[3];              ///< m; a body's part is that of its gradient in the whole one
+  float gradient[3];           ///< 1/m, of the solid share
+} SimAnswer;
+
 /// Where particle i is: (x[0][i stride], x[1][i stride], x[2][i stride]).
 typedef struct SimPlaces {
   const float *x[3];
@@ -64,9 +71,9 @@ void sim_reaction_predicted(SimReaction *reaction, int32_t i, int32_t clamped, f
                             const float to[3]);
 /// What sim_boundary_solid said at the particle's place.
 void sim_reaction_solid(SimReaction *reaction, int32_t i, const SimSolid *solid);
-/// The particle was moved by `answer` (m²) times the share's gradient (among others) to `free`, and by the clamp to `to`, which returned
-/// `clamped` and of which the share `kept` changed its velocity. Uses what sim_reaction_solid noted.
-void sim_reaction_corrected(SimReaction *reaction, int32_t i, float answer, int32_t clamped, float kept,
+/// The particle was moved by `answer` (among others) to `free`, and by the clamp to `to`, which returned `clamped` and of
+/// which the share `kept` changed its velocity. Uses what sim_reaction_solid noted.
+void sim_reaction_corrected(SimReaction *reaction, int32_t i, const SimAnswer *answer, int32_t clamped, float kept,
                             const float free[3], const float to[3]);
 
 /// Add up the notes of particles 0 … count − 1 in chunks near a body (SIM_NEAR_BODY; `near` NULL: in all).

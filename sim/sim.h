@@ -39,14 +39,18 @@ typedef struct SimError { char message[256]; } SimError;
 
 typedef enum SimSolver { SIM_SOLVER_PBF = 0, SIM_SOLVER_SPH = 1 } SimSolver;
 
-/// A block of water, filled with a cubic lattice of particles at the start.
+/// A block of water, filled with a lattice of particles: cubic where whole spacings fit, else stretched or squeezed a little along
+/// its axes, so that it reaches from side to side and the number of particles is nearly that of the block's volume.
 typedef struct SimBlockDef {
   float min[3], max[3];        ///< m, min < max
   float velocity[3];           ///< m/s at the start, default 0
   float colour[3];             ///< linear light [0, 1]; all zero: the default colour of water
 } SimBlockDef;
 
-/// A ball of water, cut out of a lattice of the same spacing that lies symmetrically about its centre.
+/// The particles that a block holds where nothing is in the way; a huge block many more than there may be.
+double sim_block_particles(const SimBlockDef *block, float particle_radius);
+
+/// A ball of water, cut out of a cubic lattice that lies symmetrically about its centre.
 typedef struct SimDropDef {
   float centre[3], radius;     ///< m, radius > 0
   float velocity[3];           ///< m/s at the start
@@ -124,11 +128,11 @@ typedef struct SimWorldDef {
   float support;               ///< support radius h in spacings, default 2, range [1.5, 3]
   float gravity[3];            ///< m/s², default (0, −9.81, 0)
   float time_step;             ///< s, the longest substep; 0 (the default): adaptive, from `cfl`
-  float cfl;                   ///< adaptive step: the fastest particle moves at most this many spacings a substep,
-                               ///< default 0.85, range [0.05, 2]
+  float cfl;                   ///< adaptive step: the fastest particle moves at most this many spacings a substep, half as many
+                               ///< again in free flight, default 1.1, range [0.05, 2]
   int32_t iterations;          ///< density iterations a substep, default 4, range [1, 100]; the last of several moves
                                ///< particles without changing their velocity (solver_pbf.h)
-  float viscosity;             ///< XSPH factor c, non-dimensional, default 0.01, range [0, 0.5] (Macklin & Müller, Eq. 17): the
+  float viscosity;             ///< XSPH factor c, non-dimensional, default 0.04, range [0, 0.5] (Macklin & Müller, Eq. 17): the
                                ///< share in a time of 0.1 √(spacing/gravity); in a substep where there is no gravity
   float kinematic_viscosity;   ///< m²/s, ν of the liquid, default 1e-6 (water), range [0, 10]
   float surface_tension;       ///< N/m, default 0, range [0, 10] (Akinci et al. 2013; tension.h)

@@ -45,6 +45,7 @@ typedef struct SimStep {
   float wall_answer;          ///< κ, how much of a particle's pressure a wall answers with (solver_pbf.h)
   // Position based fluids
   float omega;                ///< ω, damping of the Jacobi iteration
+  float over;                 ///< ω_k of the Chebyshev iteration, 1 in its first step
   float relaxation;           ///< 1/m², ε
   float tensile;              ///< m², k
   float warm;                 ///< s², turns `pressure` into the first λ
@@ -100,6 +101,8 @@ void sim_step_commit(SimWorld *world);
 /// Add the time since *since to a stage.
 void sim_step_lap(SimWorld *world, SimStage stage, double *since);
 
+/// m/s, of the particle that limits the time step.
+float sim_cfl_speed(const SimWorld *world);
 float sim_largest_speed(const SimWorld *world, float *const velocity[3]);
 
 #endif

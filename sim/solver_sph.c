@@ -119,6 +119,7 @@ static bool substep(SimWorld *world, float dt, SimError *error) {
   sim_particles_pad_zero(p, p->work);
   sim_parallel_for(step.threads, p->count, step.wide->sph_density, &step);
   sim_particles_pad(p, p->second);
+  sim_particles_pad_zero(p, p->solid);
   sim_step_lap(world, SIM_STAGE_density, &since);
   sim_parallel_for(step.threads, p->count, step.wide->sph_force, &step);
   sim_step_collect(&step);

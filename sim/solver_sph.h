@@ -3,19 +3,19 @@
 //
 //   ρ_i = Σ_j V W + f(x_i)                                       density, f the walls' share (boundary.h)
 //   P_i = max(0, c² (ρ_i − 1) + β c d dρ_i/dt)/ρ_i²              pressure p/(ρ0 ρ²), where ρ_i > 1
-//   dv_i/dt = g − Σ_j V (P_i + P_j) ∇W − κ P_i ∇f                equal and opposite between particles: momentum is kept
+//   dv_i/dt = g − Σ_j V (P_i (1 + E_i) + P_j (1 + E_j)) ∇W       equal and opposite between particles: momentum is kept
+//                                                                E: what keeps water from bearing shear (wide/shear.h)
 //
-// Without the middle term of P, the forces are the gradient of an energy of the positions, so only rounding, viscosity and
-// the bounds can change it. The cubic spline serves density and gradient alike for that reason.
+// Without the middle term of P and without E, the forces are the gradient of an energy of the positions, so only rounding,
+// viscosity and the bounds can change it. The cubic spline serves density and gradient alike for that reason. E does no work
+// to speak of: it is bounded, and small in water that moves calmly.
 //
 // A substep: v* = v + dt g, x = x + dt v* (predict, clamped), then lists, density and forces at the new x. This is the symplectic
 // Euler method with the drift first: it needs no prediction, and lists and pressures are those of where particles are.
 //
 // Pressure does not pull: water that is stretched falls apart instead of clumping (tensile instability).
 //
-// Walls. A wall answers with κ = 1.4 times the particle's pressure, for the reasons that solver_pbf.h gives. A pool of 2400
-// particles at rest for 60 √(d/g) keeps a kinetic energy of 3.0e-5 gH with κ = 1, the gradient of the walls' share, and 1.6e-5
-// with 1.4; κ = 2, the particle's pressure mirrored, keeps it stirring with 3e-3 gH and raises its energy to 1.010 E0.
+// Walls answer as solver_pbf.h says. A pool of 2000 particles at rest for 5 s keeps a kinetic energy of 2e-5 gH.
 //
 // Speed of sound. c² = 100 times the total head, the largest ½v² + gz of all particles above the lowest one, plus what pushes and
 // surface tension add: by Bernoulli no steady pressure is larger than ρ0 times that head, so the density is at most 1 %

@@ -20,7 +20,7 @@ static float viscosity_share(const SimWorld *world, float dt) {
 }
 
 // κ − 1 at a support of two spacings, see "Walls" in solver_pbf.h.
-#define WALL_ANSWER 0.4f
+#define WALL_ANSWER 0.7f
 
 static float wall_answer(const SimWorld *world) {
   float share = fminf(1, 2 / world->def.support);
@@ -62,9 +62,26 @@ static Box box_empty(void) {
   return (Box){{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
 }
 
+// Side by side in as many lanes as any processor has, because a compiler may not reorder comparisons by itself.
+#define LANES 16
+
 static void box_add(Box *box, int axis, const float *value, int32_t count) {
   float low = box->low[axis], high = box->high[axis];
-  for (int32_t i = 0; i < count; i++) {
+  int32_t i = 0;
+  if (count >= 4 * LANES) {
+    float lows[LANES], highs[LANES];
+    for (int l = 0; l < LANES; l++) lows[l] = highs[l] = value[l];
+    for (i = LANES; i + LANES <= count; i += LANES)
+      for (int l = 0; l < LANES; l++) {
+        lows[l] = value[i + l] < lows[l] ? value[i + l] : lows[l];
+        highs[l] = value[i + l] > highs[l] ? value[i + l] : highs[l];
+      }
+    for (int l = 0; l < LANES; l++) {
+      low = lows[l] < low ? lows[l] : low;
+      high = highs[l] > high ? highs[l] : high;
+    }
+  }
+  for (; i < count; i++) {
     low = value[i] < low ? value[i] : low;
     high = value[i] > high ? value[i] : high;
   }
@@ -89,22 +106,45 @@ static void add_push(const SimPush *push, const float point[3], float accelerati
   for (int k = 0; k < 3; k++) acceleration[k] += share * push->acceleration[k];
 }
 
-// Where the particles would go if nothing were in the way, into the axes; *box is the box around all these ways.
-static void fly(const SimStep *step, int32_t begin, int32_t end, float *const axes[3], Box *box) {
+// The pushes' part of the velocities.
+static void push(const SimStep *step, int32_t begin, int32_t end) {
   SimSorted *now = &step->particles->now;
   for (int32_t i = begin; i < end; i++) {
-    float from[3], acceleration[3] = {step->gravity[0], step->gravity[1], step->gravity[2]};
-    for (int k = 0; k < 3; k++) from[k] = now->position[k][i];
+    const float from[3] = {now->position[0][i], now->position[1][i], now->position[2][i]};
+    float acceleration[3] = {0, 0, 0};
     for (int32_t p = 0; p < step->push_count; p++) add_push(&step->pushes[p], from, acceleration);
-    for (int k = 0; k < 3; k++) {
-      float v = now->velocity[k][i] + step->dt * acceleration[k];
-      now->next_velocity[k][i] = v;
-      axes[k][i] = from[k] + step->dt * v;
-    }
+    for (int k = 0; k < 3; k++) now->next_velocity[k][i] += step->dt * acceleration[k];
   }
+}
+
+// The pressure from which on a particle counts as held: that of water a quarter of a spacing deep.
+#define HELD 0.25f
+
+// Where the particles would go if nothing were in the way, into the axes. Free flight is a parabola, so a particle under no
+// pressure goes its way with the mean of both velocities; one that something holds goes with the new one, which is what the
+// pressure takes back. Between them it is a matter of degree, or else a breath of pressure would part neighbours that fall
+// together. *box is the box around all these ways.
+static void fly(const SimStep *step, int32_t begin, int32_t end, float *const axes[3], Box *box) {
+  SimSorted *now = &step->particles->now;
+  float pull = 0;
   for (int k = 0; k < 3; k++) {
-    box_add(box, k, now->position[k] + begin, end - begin);
-    box_add(box, k, axes[k] + begin, end - begin);
+    const float *restrict v = now->velocity[k];
+    float *restrict next = now->next_velocity[k], gain = step->dt * step->gravity[k];
+    for (int32_t i = begin; i < end; i++) next[i] = v[i] + gain;
+    pull += step->gravity[k] * step->gravity[k];
+  }
+  if (step->push_count > 0) push(step, begin, end);
+  float held = -1 / (HELD * sqrtf(pull) * step->cubic.spacing + 1e-20f);
+  for (int k = 0; k < 3; k++) {
+    const float *restrict x = now->position[k], *restrict before = now->velocity[k], *restrict after = now->next_velocity[k],
+                *restrict pressure = now->pressure;
+    float *restrict to = axes[k], dt = step->dt;
+    for (int32_t i = begin; i < end; i++) {
+      float free = 1 - held * pressure[i]; // pressure is negative
+      to[i] = x[i] + dt * (after[i] + (free > 0 ? 0.5f * free : 0) * (before[i] - after[i]));
+    }
+    box_add(box, k, x + begin, end - begin);
+    box_add(box, k, to + begin, end - begin);
   }
 }
 
@@ -240,12 +280,50 @@ void sim_step_finish(SimWorld *world, const SimStep *from, double *since) {
 
 // ---- Check and commit ------------------------------------------------------------------------------------------------
 
+// A maximum may drop a NaN; a sum keeps it.
 static void speed_kernel(int32_t begin, int32_t end, const void *context, double *fastest) {
-  float *const *v = context;
-  for (int32_t i = begin; i < end; i++) {
-    float v2 = v[0][i] * v[0][i] + v[1][i] * v[1][i] + v[2][i] * v[2][i];
-    if (!((double)v2 <= fastest[0])) fastest[0] = isnan(v2) ? INFINITY : (double)v2;
+  float *const *v = context, most[LANES] = {0}, all[LANES] = {0};
+  for (int32_t first = begin; first < end; first += LANES)
+    for (int l = 0; l < LANES; l++) {
+      int32_t i = first + l < end ? first + l : end - 1;
+      float v2 = v[0][i] * v[0][i] + v[1][i] * v[1][i] + v[2][i] * v[2][i];
+      most[l] = v2 > most[l] ? v2 : most[l];
+      all[l] += v2;
+    }
+  for (int l = 0; l < LANES; l++) {
+    if ((double)most[l] > fastest[0]) fastest[0] = (double)most[l];
+    if (isnan(all[l])) fastest[0] = INFINITY;
   }
+}
+
+// A particle under no pressure flies: nothing but walls and bodies can be in its way, and the clamp follows all of it. So
+// it may go this much farther than one that moves in the water; else a few drops of spray decide how long the steps are.
+#define FREE_FLIGHT 1.5f
+
+typedef struct CflContext {
+  float *const *velocity;
+  const float *pressure;
+} CflContext;
+
+static void cfl_kernel(int32_t begin, int32_t end, const void *context, double *fastest) {
+  const CflContext *c = context;
+  float *const *v = c->velocity, most[LANES] = {0}, free_flight = 1 / (FREE_FLIGHT * FREE_FLIGHT);
+  for (int32_t first = begin; first < end; first += LANES)
+    for (int l = 0; l < LANES; l++) {
+      int32_t i = first + l < end ? first + l : end - 1;
+      float v2 = v[0][i] * v[0][i] + v[1][i] * v[1][i] + v[2][i] * v[2][i];
+      v2 = c->pressure[i] < 0 ? v2 : free_flight * v2;
+      most[l] = v2 > most[l] ? v2 : most[l];
+    }
+  for (int l = 0; l < LANES; l++)
+    if ((double)most[l] > fastest[0]) fastest[0] = (double)most[l];
+}
+
+float sim_cfl_speed(const SimWorld *world) {
+  double fastest = 0;
+  CflContext context = {world->particles.now.velocity, world->particles.now.pressure};
+  sim_parallel_max(world->threads, world->particles.count, 1, cfl_kernel, &context, &fastest);
+  return (float)sqrt(fastest);
 }
 
 float sim_largest_speed(const SimWorld *world, float *const velocity[3]) {

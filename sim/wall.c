@@ -16,6 +16,19 @@ static double half_lattice(double s, double spacing, double h) {
   return sum;
 }
 
+// −Σ x_n ∂W/∂x_n over the same half lattice.
+static double half_lattice_moment(double s, double spacing, double h) {
+  int reach = (int)ceil(h / spacing);
+  double sum = 0;
+  for (int k = 0; k <= reach; k++)
+    for (int j = -reach; j <= reach; j++)
+      for (int i = -reach; i <= reach; i++) {
+        double z = s + (k + 0.5) * spacing, r = sqrt(z * z + spacing * spacing * (i * i + j * j));
+        sum -= sim_kernel_cubic_derivative(r, h) * z * z / r;
+      }
+  return sum;
+}
+
 // V Σ W x² over the whole lattice.
 static double second_moment(double spacing, double h, double volume) {
   int reach = (int)ceil(h / spacing);
@@ -36,6 +49,17 @@ static double share_at(double s, double spacing, double h, double volume) {
   return share * (at_surface + (1 - at_surface) * t * t * (3 - 2 * t));
 }
 
+// The shares fall with the distance, so the one pass over them finds where each of the moments belongs.
+static void make_moments(SimWall *wall, const SimCubic *cubic) {
+  int k = SIM_WALL_STEPS;
+  for (int m = 0; m <= SIM_WALL_MOMENTS; m++) {
+    double share = (double)m / SIM_WALL_MOMENTS, s = (double)k / (double)wall->inverse_step;
+    while (k > 0 && (double)wall->share[k] < share) s = --k / (double)wall->inverse_step;
+    double moment = (double)cubic->volume * half_lattice_moment(s, (double)wall->spacing, (double)cubic->h) - share;
+    wall->moment[m] = share > 0 && share < 0.5 ? (float)fmax(moment, 0) : 0;
+  }
+}
+
 void sim_wall_make(SimWall *wall, const SimCubic *cubic) {
   double spacing = cubic->spacing, h = cubic->h, reach = h - spacing / 2, step = reach / SIM_WALL_STEPS;
   wall->reach = (float)reach;
@@ -49,4 +73,5 @@ void sim_wall_make(SimWall *wall, const SimCubic *cubic) {
            below = s < e ? 1 - share_at(e - s, spacing, h, cubic->volume) : share_at(s - e, spacing, h, cubic->volume);
     wall->slope[k] = (float)((above - below) / (2 * e));
   }
+  make_moments(wall, cubic);
 }

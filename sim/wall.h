@@ -21,6 +21,7 @@
 #include "sim/kernels.h"
 
 #define SIM_WALL_STEPS 512
+#define SIM_WALL_MOMENTS 128
 
 // Like fminf and fmaxf, but the compiler makes single instructions of them. A NaN as `a` gives `b`.
 static inline float sim_smaller(float a, float b) {
@@ -38,6 +39,9 @@ typedef struct SimWall {
   float spread;       ///< m², σ²
   float share[SIM_WALL_STEPS + 2]; ///< f at the distances 0, step, 2 step …
   float slope[SIM_WALL_STEPS + 2]; ///< df/ds, 1/m, never positive
+  /// Where f is 0, 1/SIM_WALL_MOMENTS … 1: how much larger −V Σ x_n ∂W/∂x_n over the half lattice is, n across the wall, than f,
+  /// which is what −V Σ x_t ∂W/∂x_t along the wall comes to. 0 behind the surface.
+  float moment[SIM_WALL_MOMENTS + 1];
 } SimWall;
 
 void sim_wall_make(SimWall *wall, const SimCubic *cubic);

@@ -10,4 +10,10 @@ void sim_wall_table_make(SimWallTable *table, const SimWall *wall) {
     entry[3] = wall->slope[k + 1] - wall->slope[k];
   }
   for (int k = 0; k < 4; k++) table->entry[4 * SIM_WALL_STEPS + k] = 0;
+  for (int k = 0; k <= SIM_WALL_MOMENTS; k++) {
+    float *moment = table->moment + 4 * k;
+    moment[0] = wall->moment[k];
+    moment[1] = k < SIM_WALL_MOMENTS ? wall->moment[k + 1] - wall->moment[k] : 0;
+    moment[2] = moment[3] = 0;
+  }
 }

@@ -8,7 +8,7 @@ extern const SimWide WIDE(sim_wide);
 
 void WIDE(sim_list_block)(int32_t begin, int32_t end, const void *context);
 void WIDE(sim_pbf_inherit)(int32_t begin, int32_t end, const void *context);
-void WIDE(sim_pbf_prepare)(int32_t begin, int32_t end, const void *context);
+void WIDE(sim_pbf_start)(int32_t begin, int32_t end, const void *context, double *partial);
 void WIDE(sim_pbf_density)(int32_t begin, int32_t end, const void *context);
 void WIDE(sim_pbf_correct)(int32_t begin, int32_t end, const void *context, double *partial);
 void WIDE(sim_sph_density)(int32_t begin, int32_t end, const void *context);

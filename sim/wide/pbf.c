@@ -1,8 +1,7 @@
 // The two sweeps of a position based density iteration over neighbour lists: see solver_pbf.h for the method.
-#include "sim/solver.h"
 #include "sim/wide/kernels.h"
+#include "sim/wide/pbf_move.h"
 #include "sim/wide/spline.h"
-#include "sim/wide/walls.h"
 
 /// Sums over the neighbours of the particles of one chunk.
 typedef struct DensitySums {
@@ -34,7 +33,13 @@ static inline SimF lambda(const SimStep *step, int32_t i, SimF density, SimF squ
   if (step->stabilise) return strength * sim_max(excess, sim_f(0));
   float *pressure = step->particles->now.pressure + i;
   SimF before = sim_load(pressure), inherited = sim_load(step->particles->density + i);
-  SimF after = sim_min(before + strength * (excess - inherited), sim_f(0));
+  SimF change = strength * (excess - inherited);
+  if (step->over > 1) {
+    SimF last[4]; // with what the last iteration changed
+    sim_load4(step->particles->second + 4 * (size_t)i, last);
+    change = sim_f(step->over) * change + sim_f(step->over - 1) * last[3];
+  }
+  SimF after = sim_min(before + change, sim_f(0));
   sim_store(pressure, after);
   return after - before;
 }
@@ -94,87 +99,22 @@ static inline void sum_moves(const SimStep *step, bool tensile, const SimF own[4
   for (int k = 0; k < 3; k++) move[k] = move[k] * sim_f(6 * step->cubic.gradient_scale);
 }
 
-// A correction changes the velocity by Δp/dt, and where the clamp had a say, by what was really moved. Taking Δp itself
-// instead of the difference of rounded positions keeps the sum over all particles, the momentum, to the last digits.
 void WIDE(sim_pbf_correct)(int32_t begin, int32_t end, const void *context, double *longest) {
   const SimStep *step = context;
   const SimNeighbours *lists = step->neighbours;
   SimParticles *p = step->particles;
-  SimF zero = sim_f(0), most = zero, all = zero, wall = sim_f(step->wall_answer);
+  PbfMoved moved = pbf_moved_none();
   for (int32_t i = begin; i < end; i += SIM_LANES) {
     const int32_t chunk = i / SIM_CHUNK;
     const uint32_t *index = lists->index + (size_t)lists->start[chunk] * SIM_CHUNK + i % SIM_CHUNK;
-    SimF own[4], move[3], to[3];
+    SimF own[4], move[3], solid[4];
     sim_load4(p->second + 4 * (size_t)i, own);
     if (step->tensile > 0)
       sum_moves(step, true, own, index, lists->length[chunk], move);
     else
       sum_moves(step, false, own, index, lists->length[chunk], move);
-    SimF answer = wall * own[3];
-    if (p->near[chunk]) {
-      SimF solid[4];
-      sim_load4(p->solid + 4 * (size_t)i, solid);
-      for (int k = 0; k < 3; k++) move[k] = move[k] + answer * solid[k];
-    }
-    for (int k = 0; k < 3; k++) to[k] = own[k] + move[k];
-    SimF gain[3] = {move[0], move[1], move[2]};
-    if (p->near[chunk]) WIDE(sim_wall_clamp)(step, i, answer, own, move, to, gain);
-    SimF d2 = zero;
-    for (int k = 0; k < 3; k++) {
-      float *v = p->now.next_velocity[k] + i;
-      if (!step->stabilise) sim_store(v, sim_load(v) + gain[k] * sim_f(step->inverse_dt));
-      d2 = d2 + move[k] * move[k];
-    }
-    sim_store4(p->first + 4 * (size_t)i, to[0], to[1], to[2], zero);
-    if (i + SIM_LANES > p->count) d2 = WIDE(sim_only_particles)(p->count - i, d2);
-    most = sim_max(most, d2);
-    all = all + d2; // keeps a NaN, which the maximum may drop
+    if (p->near[chunk]) sim_load4(p->solid + 4 * (size_t)i, solid);
+    pbf_move(step, i, own, solid, move, p->first, &moved);
   }
-  float lane[SIM_LANES], sum[SIM_LANES];
-  sim_store(lane, most);
-  sim_store(sum, all);
-  for (int k = 0; k < SIM_LANES; k++) {
-    if ((double)lane[k] > longest[0]) longest[0] = lane[k];
-    if (isnan(sum[k])) longest[0] = INFINITY;
-  }
-}
-
-// ---- Before the first iteration ----------------------------------------------------------------------------------------
-
-// The compression that the state at the start of the substep (in `second`) brings along, into `density`. The lists are those
-// of the predicted positions; what they miss lies at the rim of the support, where W is next to nothing.
-void WIDE(sim_pbf_inherit)(int32_t begin, int32_t end, const void *context) {
-  const SimStep *step = context;
-  const SimNeighbours *lists = step->neighbours;
-  SimParticles *p = step->particles;
-  const Spline s = spline_make(&step->cubic);
-  SimF value = sim_f(2 * step->cubic.value_scale);
-  for (int32_t i = begin; i < end; i += SIM_LANES) {
-    const uint32_t *index = lists->index + (size_t)lists->start[i / SIM_CHUNK] * SIM_CHUNK + i % SIM_CHUNK;
-    SimF own[4], solid[4], sum = s.zero;
-    sim_load4(p->second + 4 * (size_t)i, own);
-    WIDE(sim_wall_solid)(step, i, own, solid);
-    for (uint32_t k = 0; k < lists->length[i / SIM_CHUNK]; k++, index += SIM_CHUNK) {
-      SimF other[4], w, over_r;
-      sim_gather4(p->second, index, other);
-      SimF dx = own[0] - other[0], dy = own[1] - other[1], dz = own[2] - other[2];
-      spline(&s, dx * dx + dy * dy + dz * dz, &w, &over_r);
-      sum = sum + w;
-    }
-    SimF density = sim_f(step->cubic.value_scale) + solid[3] + value * sum;
-    sim_store(p->density + i, sim_max(density - s.one, s.zero));
-  }
-}
-
-// `second` gets the predicted positions with the λ that the last substep's pressure stands for.
-void WIDE(sim_pbf_prepare)(int32_t begin, int32_t end, const void *context) {
-  const SimStep *step = context;
-  SimParticles *p = step->particles;
-  for (int32_t i = begin; i < end; i += SIM_LANES) {
-    SimF own[4], solid[4], lambda_first = sim_load(p->now.pressure + i) * sim_f(step->warm);
-    sim_load4(p->first + 4 * (size_t)i, own);
-    WIDE(sim_wall_solid)(step, i, own, solid);
-    sim_store(p->now.pressure + i, lambda_first);
-    sim_store4(p->second + 4 * (size_t)i, own[0], own[1], own[2], lambda_first);
-  }
+  pbf_moved_longest(&moved, longest);
 }

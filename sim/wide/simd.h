@@ -12,6 +12,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 #include "sim/wide/wide.h"
 
@@ -34,6 +35,17 @@ static inline SimF sim_min(SimF a, SimF b) { return _mm512_min_ps(a, b); }
 /// `chosen` where x < y, `other` elsewhere.
 static inline SimF sim_select_less(SimF x, SimF y, SimF chosen, SimF other) {
   return _mm512_mask_blend_ps(_mm512_cmp_ps_mask(x, y, _CMP_LT_OQ), other, chosen);
+}
+/// Two floats in the room of one: the upper 16 bits of each, that is, eight significant bits, cut off towards zero.
+static inline SimF sim_halves(SimF upper, SimF lower) {
+  __m512i high = _mm512_and_si512(_mm512_castps_si512(upper), _mm512_set1_epi32((int)0xffff0000u));
+  return _mm512_castsi512_ps(_mm512_or_si512(high, _mm512_srli_epi32(_mm512_castps_si512(lower), 16)));
+}
+static inline SimF sim_upper_half(SimF pair) {
+  return _mm512_castsi512_ps(_mm512_and_si512(_mm512_castps_si512(pair), _mm512_set1_epi32((int)0xffff0000u)));
+}
+static inline SimF sim_lower_half(SimF pair) {
+  return _mm512_castsi512_ps(_mm512_slli_epi32(_mm512_castps_si512(pair), 16));
 }
 
 static inline void sim_transpose4(SimF r0, SimF r1, SimF r2, SimF r3, SimF out[4]) {
@@ -106,6 +118,16 @@ static inline SimF sim_min(SimF a, SimF b) { return _mm256_min_ps(a, b); }
 static inline SimF sim_select_less(SimF x, SimF y, SimF chosen, SimF other) {
   return _mm256_blendv_ps(other, chosen, _mm256_cmp_ps(x, y, _CMP_LT_OQ));
 }
+static inline SimF sim_halves(SimF upper, SimF lower) {
+  __m256i high = _mm256_and_si256(_mm256_castps_si256(upper), _mm256_set1_epi32((int)0xffff0000u));
+  return _mm256_castsi256_ps(_mm256_or_si256(high, _mm256_srli_epi32(_mm256_castps_si256(lower), 16)));
+}
+static inline SimF sim_upper_half(SimF pair) {
+  return _mm256_castsi256_ps(_mm256_and_si256(_mm256_castps_si256(pair), _mm256_set1_epi32((int)0xffff0000u)));
+}
+static inline SimF sim_lower_half(SimF pair) {
+  return _mm256_castsi256_ps(_mm256_slli_epi32(_mm256_castps_si256(pair), 16));
+}
 
 static inline void sim_transpose4(SimF r0, SimF r1, SimF r2, SimF r3, SimF out[4]) {
   SimF a = _mm256_unpacklo_ps(r0, r1), b = _mm256_unpackhi_ps(r0, r1), c = _mm256_unpacklo_ps(r2, r3),
@@ -167,6 +189,16 @@ static inline SimF sim_select_less(SimF x, SimF y, SimF chosen, SimF other) {
   __m128 less = _mm_cmplt_ps(x, y);
   return _mm_or_ps(_mm_and_ps(less, chosen), _mm_andnot_ps(less, other));
 }
+static inline SimF sim_halves(SimF upper, SimF lower) {
+  __m128i high = _mm_and_si128(_mm_castps_si128(upper), _mm_set1_epi32((int)0xffff0000u));
+  return _mm_castsi128_ps(_mm_or_si128(high, _mm_srli_epi32(_mm_castps_si128(lower), 16)));
+}
+static inline SimF sim_upper_half(SimF pair) {
+  return _mm_castsi128_ps(_mm_and_si128(_mm_castps_si128(pair), _mm_set1_epi32((int)0xffff0000u)));
+}
+static inline SimF sim_lower_half(SimF pair) {
+  return _mm_castsi128_ps(_mm_slli_epi32(_mm_castps_si128(pair), 16));
+}
 static inline void sim_transpose4(SimF r0, SimF r1, SimF r2, SimF r3, SimF out[4]) {
   _MM_TRANSPOSE4_PS(r0, r1, r2, r3);
   out[0] = r0, out[1] = r1, out[2] = r2, out[3] = r3;
@@ -206,6 +238,21 @@ static inline SimF sim_sqrt(SimF a) { return sqrtf(a); }
 static inline SimF sim_max(SimF a, SimF b) { return a > b ? a : b; }
 static inline SimF sim_min(SimF a, SimF b) { return a < b ? a : b; }
 static inline SimF sim_select_less(SimF x, SimF y, SimF chosen, SimF other) { return x < y ? chosen : other; }
+static inline uint32_t sim_bits(SimF a) {
+  uint32_t bits;
+  memcpy(&bits, &a, sizeof bits);
+  return bits;
+}
+static inline SimF sim_from_bits(uint32_t bits) {
+  SimF a;
+  memcpy(&a, &bits, sizeof a);
+  return a;
+}
+static inline SimF sim_halves(SimF upper, SimF lower) {
+  return sim_from_bits((sim_bits(upper) & 0xffff0000u) | sim_bits(lower) >> 16);
+}
+static inline SimF sim_upper_half(SimF pair) { return sim_from_bits(sim_bits(pair) & 0xffff0000u); }
+static inline SimF sim_lower_half(SimF pair) { return sim_from_bits(sim_bits(pair) << 16); }
 static inline void sim_load4(const float *from, SimF out[4]) {
   for (int c = 0; c < 4; c++) out[c] = from[c];
 }

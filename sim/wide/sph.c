@@ -1,19 +1,20 @@
 // The two sweeps of a substep of smoothed particle hydrodynamics: see solver_sph.h for the method.
-#include "sim/solver.h"
 #include "sim/wide/kernels.h"
+#include "sim/wide/shear.h"
 #include "sim/wide/spline.h"
 #include "sim/wide/walls.h"
 
 /// Sums over the neighbours of the particles of one chunk.
 typedef struct Sums {
-  SimF density, rate, gradient[3];
+  SimF density, rate;
+  Tensor moment;
 } Sums;
 
-// Σ W, Σ (v_i − v_j)·∇W and Σ ∇W; positions in `first`, velocities in `work`.
+// Σ W, Σ (v_i − v_j)·∇W and Σ (x_i − x_j) ⊗ ∇W; positions in `first`, velocities in `work`.
 static inline Sums sum_density(const SimStep *step, const SimF own[4], const SimF v[4], const uint32_t *index,
                                uint32_t slots) {
   const Spline s = spline_make(&step->cubic);
-  Sums sums = {s.zero, s.zero, {s.zero, s.zero, s.zero}};
+  Sums sums = {s.zero, s.zero, tensor_zero()};
   for (uint32_t k = 0; k < slots; k++, index += SIM_CHUNK) {
     SimF other[4], u[4], w, over_r;
     sim_gather4(step->particles->first, index, other);
@@ -22,9 +23,7 @@ static inline Sums sum_density(const SimStep *step, const SimF own[4], const Sim
     spline(&s, dx * dx + dy * dy + dz * dz, &w, &over_r);
     sums.density = sums.density + w;
     sums.rate = sums.rate + over_r * ((v[0] - u[0]) * dx + (v[1] - u[1]) * dy + (v[2] - u[2]) * dz);
-    sums.gradient[0] = sums.gradient[0] + over_r * dx;
-    sums.gradient[1] = sums.gradient[1] + over_r * dy;
-    sums.gradient[2] = sums.gradient[2] + over_r * dz;
+    tensor_add(&sums.moment, over_r, dx, dy, dz);
   }
   return sums;
 }
@@ -49,55 +48,41 @@ void WIDE(sim_sph_density)(int32_t begin, int32_t end, const void *context) {
     SimF own[4], v[4], solid[4];
     sim_load4(p->first + 4 * (size_t)i, own);
     sim_load4(p->work + 4 * (size_t)i, v);
-    WIDE(sim_wall_solid)(step, i, own, solid);
+    WIDE(sim_wall_solid_here)(step, i, own, solid);
     Sums sums = sum_density(step, own, v, lists->index + (size_t)lists->start[chunk] * SIM_CHUNK + i % SIM_CHUNK,
                             lists->length[chunk]);
     SimF density = sim_f(cubic->value_scale) + solid[3] + value * sums.density, rate = slope * sums.rate;
     // A wall of the box stands still. What an obstacle's own motion adds to the rate is left out: it only damps.
     for (int k = 0; k < 3 && p->near[chunk] == SIM_NEAR_WALL; k++) rate = rate + solid[k] * v[k];
     sim_store(p->density + i, density);
-    sim_store4(p->second + 4 * (size_t)i, own[0], own[1], own[2], pressure(step, density, rate));
+    SimF press = pressure(step, density, rate);
+    sim_store4(p->second + 4 * (size_t)i, own[0], own[1], own[2], press);
+    shear_store(step, i, &sums.moment, solid, press);
   }
 }
 
-// What the pressure of these particles does to floating bodies: the velocity changes by answer/dt ∇f.
-static void note_bodies(const SimStep *step, int32_t i, SimF answer) {
-  static const float still[3] = {0, 0, 0};
-  float answers[SIM_LANES];
-  sim_store(answers, answer);
-  for (int32_t k = 0; k < SIM_LANES && i + k < step->particles->count; k++)
-    sim_reaction_corrected(step->reaction, i + k, answers[k], -1, 0, still, still);
-}
-
-// dv_i/dt = −Σ_j V (P_i + P_j) ∇W − κ P_i ∇f; positions and P = p/(ρ0 ρ²) in `second`.
+// dv_i/dt = −Σ_j V (P_i (1 + E_i) + P_j (1 + E_j)) ∇W and what the walls add; positions and P = p/(ρ0 ρ²) in `second`.
 void WIDE(sim_sph_force)(int32_t begin, int32_t end, const void *context) {
   const SimStep *step = context;
-  const SimNeighbours *lists = step->neighbours;
   SimParticles *p = step->particles;
-  const Spline s = spline_make(&step->cubic);
-  SimF slope = sim_f(6 * step->cubic.gradient_scale), dt = sim_f(step->dt), wall = sim_f(step->wall_answer);
+  SimF scale = sim_f(-6 * step->cubic.gradient_scale * step->dt * step->dt),
+       wall = sim_f(-step->wall_answer * step->dt * step->dt);
   for (int32_t i = begin; i < end; i += SIM_LANES) {
-    const int32_t chunk = i / SIM_CHUNK;
-    const uint32_t *index = lists->index + (size_t)lists->start[chunk] * SIM_CHUNK + i % SIM_CHUNK;
-    SimF own[4], sum[3] = {s.zero, s.zero, s.zero}, solid[4] = {s.zero, s.zero, s.zero, s.zero};
+    SimF own[4], solid[4], move[3]; // move: the change of velocity, times dt
     sim_load4(p->second + 4 * (size_t)i, own);
-    for (uint32_t k = 0; k < lists->length[chunk]; k++, index += SIM_CHUNK) {
-      SimF other[4], w, over_r;
-      sim_gather4(p->second, index, other);
-      SimF dx = own[0] - other[0], dy = own[1] - other[1], dz = own[2] - other[2];
-      spline(&s, dx * dx + dy * dy + dz * dz, &w, &over_r);
-      SimF factor = (own[3] + other[3]) * over_r;
-      sum[0] = sum[0] + factor * dx;
-      sum[1] = sum[1] + factor * dy;
-      sum[2] = sum[2] + factor * dz;
+    shear_sum(step, p->second, i, own, move);
+    for (int k = 0; k < 3; k++) move[k] = scale * move[k];
+    if (p->near[i / SIM_CHUNK]) {
+      SimWallAnswer answer;
+      WIDE(sim_wall_solid_here)(step, i, own, solid);
+      WIDE(sim_wall_answer)(step, wall * own[3], solid, move, &answer);
+      for (int k = 0; k < 3; k++) move[k] = move[k] + answer.aside[k] + answer.pressure * solid[k];
+      if (step->reaction && p->near[i / SIM_CHUNK] & SIM_NEAR_BODY) WIDE(sim_wall_note)(step, i, &answer);
     }
-    if (p->near[chunk]) sim_load4(p->solid + 4 * (size_t)i, solid);
-    SimF answer = wall * own[3];
     for (int k = 0; k < 3; k++) {
       float *v = p->now.next_velocity[k] + i;
-      sim_store(v, sim_load(v) - dt * (slope * sum[k] + answer * solid[k]));
+      sim_store(v, sim_load(v) + sim_f(step->inverse_dt) * move[k]);
     }
-    sim_store(p->now.pressure + i, s.zero - own[3]);
-    if (step->reaction && p->near[chunk] & SIM_NEAR_BODY) note_bodies(step, i, s.zero - dt * dt * answer);
+    sim_store(p->now.pressure + i, sim_f(0) - own[3]);
   }
 }

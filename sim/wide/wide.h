@@ -15,8 +15,8 @@ typedef struct SimWide {
   const char *name;                ///< "avx512", "avx2", "sse2", "scalar"
   SimKernel *list_block;           ///< neighbour lists of one block (SimListContext)
   // The kernels of the solvers: SimStep, see solver.h.
-  SimKernel *pbf_inherit, *pbf_prepare, *pbf_density;
-  SimReduceKernel *pbf_correct;
+  SimKernel *pbf_inherit, *pbf_density;
+  SimReduceKernel *pbf_start, *pbf_correct;
   SimKernel *sph_density, *sph_force;
   SimKernel *diffuse, *tension_normal, *tension_force, *vorticity_curl, *vorticity_confine;
   // The kernels of the surface stages, see surface.h: SimSweepContext, SimEllipsoidContext, SimHeightContext.

@@ -43,6 +43,29 @@ static void walls_complete_the_lattice(void **state) {
   }
 }
 
+// Along a wall −V Σ x_t ∂W/∂x_t over the half lattice is f, across it f and the moment that the table holds for that f.
+static void moments_complete_the_lattice(void **state) {
+  (void)state;
+  SimBoundary boundary = box(1, NULL, 0);
+  SimCubic cubic = sim_cubic_make(0.05f, 2);
+  for (double s = 0.3 * 0.05; s < 1.3 * 0.05; s += 0.1 * 0.05) {
+    double along = 0, across = 0;
+    float slope, f = sim_wall_share(&boundary.wall, (float)s, &slope), place = f * SIM_WALL_MOMENTS;
+    for (int z = 0; z <= 2; z++)
+      for (int y = -2; y <= 2; y++)
+        for (int x = -2; x <= 2; x++) {
+          double d[3] = {0.05 * x, 0.05 * y, s + 0.05 * (z + 0.5)}, r = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+          double g = -(double)sim_cubic_gradient(&cubic, (float)r) / r;
+          along += g * d[0] * d[0];
+          across += g * d[2] * d[2];
+        }
+    const float *moment = boundary.wall.moment + (int)place;
+    double found = (double)(moment[0] + (place - (float)(int)place) * (moment[1] - moment[0]));
+    if (fabs(along - (double)f) > 0.01) fail_msg("at %g m: along %.4f, share %.4f", s, along, (double)f);
+    if (fabs(across - (double)f - found) > 0.02) fail_msg("at %g m: across %.4f, found %.4f", s, across - (double)f, found);
+  }
+}
+
 static void check_gradient(const SimBoundary *boundary, const float point[3]) {
   float gradient[3], ignored[3];
   float e = 1e-3f * 0.05f;
@@ -159,6 +182,7 @@ static void a_wedge_holds(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(walls_complete_the_lattice),
+      cmocka_unit_test(moments_complete_the_lattice),
       cmocka_unit_test(gradients_match_difference_quotients),
       cmocka_unit_test(distances_are_exact),
       cmocka_unit_test(a_sphere_has_its_distance),

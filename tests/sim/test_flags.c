@@ -101,7 +101,7 @@ static void water_hides_nothing(void **state) {
   def = test_def((const float[3]){1, 1, 0.8f}, &block, (const float[3]){1, 0.8f, 0.8f});
   def.jitter = 0.1f;
   world = test_create(&def);
-  test_advance(world, 60);
+  test_advance(world, 180);
   const SimFrame *frame = test_frame(world, SIM_NEED_SURFACE, buffer);
   check_rays(frame, 5000, 9);
   double share = (double)flagged(frame) / frame->count; // two layers of 20 × 16 × 16 are 49 %, three 66 %

@@ -327,6 +327,39 @@ static void refused(SimObstacleDef def, const char *expected) {
   if (!strstr(error.message, expected)) fail_msg("'%s' does not name '%s'", error.message, expected);
 }
 
+// A plate closes in on a wall until it touches it. The water in front of it goes over its top; what is left has less room than a
+// spacing, and must not be driven out with a speed without bound.
+static void water_is_squeezed_out_gently(void **state) {
+  (void)state;
+  SimBlockDef block;
+  SimObstacleDef plate = sim_default_obstacle_def();
+  const SimPoseKey keys[2] = {{0.2, {0.35f, 0.25f, 0.12f}, {0, 0, 0, 1}}, {1.2, {0.04f, 0.25f, 0.12f}, {0, 0, 0, 1}}};
+  plate.body = (SimObstacle){
+      .shape = SIM_BOX, .size = {0.08f, 0.5f, 0.3f}, .position = {0.35f, 0.25f, 0.12f}, .rotation = {0, 0, 0, 1}};
+  plate.motion = SIM_SCRIPTED;
+  plate.key_count = 2;
+  plate.keys = keys;
+  SimWorldDef def = test_def((const float[3]){1, 1.2f, 0.24f}, &block, (const float[3]){0.3f, 0.4f, 0.24f});
+  def.particle_radius = 0.02f;
+  def.obstacles = &plate;
+  def.obstacle_count = 1;
+  SimWorld *world = test_create(&def);
+  SimFrameBuffer *buffer = sim_frame_buffer_create();
+  double fastest = 0;
+  for (int f = 0; f < 90; f++) {
+    advance(world, 1.0 / 60);
+    const SimFrame *frame = test_frame(world, 0, buffer);
+    test_inside_container(frame);
+    // Until no particle has room any more. Then it is either in the wall or in the plate.
+    if (obstacle_now(world).position[0] - 0.04f > 0.04f) test_outside_obstacles(frame);
+    fastest = fmax(fastest, sim_world_measures(world).max_speed);
+  }
+  print_message("squeezed out with %.1f m/s at most\n", fastest);
+  if (fastest > 60) fail_msg("squeezed out with %g m/s", fastest);
+  sim_frame_buffer_destroy(buffer);
+  sim_world_destroy(world);
+}
+
 static void impossible_motions_are_named(void **state) {
   (void)state;
   SimObstacleDef def = sim_default_obstacle_def();
@@ -377,6 +410,6 @@ int main(void) {
       cmocka_unit_test(substeps_follow_the_body),    cmocka_unit_test(dragging_keeps_its_speed),
       cmocka_unit_test(dragging_asks_for_substeps),  cmocka_unit_test(dragging_bounds_the_corners),
       cmocka_unit_test(targets_are_checked),         cmocka_unit_test(paddle_sweeps_all_water),
-      cmocka_unit_test(impossible_motions_are_named)};
+      cmocka_unit_test(water_is_squeezed_out_gently), cmocka_unit_test(impossible_motions_are_named)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

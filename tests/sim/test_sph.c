@@ -1,7 +1,7 @@
 // Smoothed particle hydrodynamics: its sweeps against sums over all pairs, and water that behaves like water.
 #include "sim_test.h"
 
-#include "sim/world.h"
+#include "reference/stress.h"
 #include "validation.h"
 
 static SimBlockDef block;
@@ -48,10 +48,10 @@ static double slow_pressure(const SimWorld *world, const SimStep *step, int32_t 
     for (int k = 0; k < 3; k++)
       rate += near.over_r * near.d[k] * ((double)p->work[4 * i + k] - (double)p->work[4 * j + k]);
   }
-  if (p->near[i / SIM_CHUNK]) {
-    *density += (double)p->solid[4 * i + 3];
-    for (int k = 0; k < 3; k++) rate += (double)p->solid[4 * i + k] * (double)p->work[4 * i + k];
-  }
+  float solid[4];
+  reference_solid(world, p->first, i, solid);
+  *density += (double)solid[3];
+  for (int k = 0; k < 3; k++) rate += (double)solid[k] * (double)p->work[4 * i + k];
   double share = fmin(1, fmax(0, 1 + 100 * (*density - 1)));
   double pressure = (double)step->stiffness * fmax(0, *density - 1) + (double)step->bulk * rate * share;
   return fmax(0, pressure) / (*density * *density);
@@ -67,7 +67,7 @@ static void sweeps_match_all_pairs(void **state) {
   SimStep step = sim_step_make(world, 0.001f);
   step.stiffness = 400, step.bulk = 0.5f;
   int32_t n = p->count;
-  double *pressure = calloc((size_t)n, sizeof *pressure), most = 0;
+  double *pressure = calloc((size_t)n, sizeof *pressure), (*shear)[3][3] = calloc((size_t)n, sizeof *shear), most = 0;
   for (int32_t i = 0; i < n; i++)
     for (int k = 0; k < 3; k++) {
       p->work[4 * i + k] = sinf(20 * p->first[4 * i + (k + 1) % 3]) - 2 * p->first[4 * i + k];
@@ -83,20 +83,25 @@ static void sweeps_match_all_pairs(void **state) {
       fail_msg("density of %d: %.8f, %.8f", i, density, (double)p->density[i]);
     if (fabs(pressure[i] - (double)p->second[4 * i + 3]) > 2e-3)
       fail_msg("pressure of %d: %.8f, %.8f", i, pressure[i], (double)p->second[4 * i + 3]);
+    double expected[3][3];
+    reference_shear(world, p->first, i, expected);
+    reference_unpack(p->solid + 4 * i, shear[i]);
+    for (int k = 0; k < 9; k++)
+      if (fabs(shear[i][k / 3][k % 3] - pressure[i] * expected[k / 3][k % 3]) > 0.01 * pressure[i])
+        fail_msg("shear of %d: %g, %g", i, shear[i][k / 3][k % 3], pressure[i] * expected[k / 3][k % 3]);
   }
   assert_true(most > 5);
   sim_particles_pad(p, p->second);
+  sim_particles_pad_zero(p, p->solid);
   sim_parallel_for(1, n, step.wide->sph_force, &step);
-  for (int32_t i = 0; i < n; i++)
-    for (int k = 0; k < 3; k++) {
-      double force = p->near[i / SIM_CHUNK] ? -(double)step.wall_answer * pressure[i] * (double)p->solid[4 * i + k] : 0;
-      for (int32_t j = 0; j < n; j++) {
-        Pair near;
-        if (pair(world, i, j, &near)) force -= (pressure[i] + pressure[j]) * near.over_r * near.d[k];
-      }
-      if (fabs(force * 0.001 - (double)p->now.next_velocity[k][i]) > 2e-4 * most * 0.001 / 0.05)
-        fail_msg("force on %d: %g, %g", i, force, (double)p->now.next_velocity[k][i] * 1000);
-    }
+  for (int32_t i = 0; i < n; i++) {
+    double move[3];
+    reference_move(world, p->first, pressure, shear, (double)step.wall_answer, i, move);
+    for (int k = 0; k < 3; k++)
+      if (fabs(-move[k] * 0.001 - (double)p->now.next_velocity[k][i]) > 2e-4 * most * 0.001 / 0.05)
+        fail_msg("force on %d: %g, %g", i, -move[k], (double)p->now.next_velocity[k][i] * 1000);
+  }
+  free(shear);
   free(pressure);
   sim_world_destroy(world);
 }

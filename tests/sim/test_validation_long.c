@@ -18,23 +18,30 @@ static void columns_of_several_sizes(void **state) {
 
 static void standing_waves(void **state) {
   (void)state;
-  const int layers[2] = {16, 24};
-  for (int k = 0; k < 2; k++) {
-    double ratio = validate_standing_wave(SIM_SOLVER_PBF, layers[k]);
-    print_message("standing wave, %d layers: period %.4f of theory\n", layers[k], ratio);
-    assert_true(fabs(ratio - 1) <= 0.03);
+  const struct { SimSolver solver; int layers; double amplitude, jitter; } cases[5] = {
+      {SIM_SOLVER_PBF, 16, 0.05, 0}, {SIM_SOLVER_PBF, 24, 0.05, 0.2}, {SIM_SOLVER_PBF, 24, 0.15, 0},
+      {SIM_SOLVER_PBF, 12, 0.1, 0},  {SIM_SOLVER_SPH, 16, 0.1, 0},
+  };
+  for (int k = 0; k < 5; k++) {
+    StandingWave wave =
+        validate_standing_wave(cases[k].solver, cases[k].layers, cases[k].amplitude, cases[k].jitter);
+    print_message("%s, standing wave in %d layers, amplitude %.2f, jitter %.1f: period %.4f of theory, keeps %.2f in half of it\n",
+                  cases[k].solver == SIM_SOLVER_SPH ? "sph" : "pbf", cases[k].layers, cases[k].amplitude, cases[k].jitter,
+                  wave.period, wave.kept);
+    assert_true(fabs(wave.period - 1) <= 0.03);
   }
 }
 
-// Three pools of different depth and particle size: below 10⁻⁴ g H after five seconds, and from then on for a minute.
+// Pools of different depth and particle size, from 7 to 40 layers: below 10⁻⁴ g H after five seconds, and from then on for a minute.
 static void a_pool_stays_at_rest_for_a_minute(void **state) {
   (void)state;
-  const double depth[3] = {0.3, 0.5, 0.8}, radius[3] = {0.02, 0.025, 0.02};
-  for (int k = 0; k < 3; k++) {
+  const double depth[4] = {0.3, 0.5, 0.8, 1.2}, radius[4] = {0.02, 0.025, 0.02, 0.015};
+  for (int k = 0; k < 4; k++) {
     SimBlockDef block = {{0, 0, 0}, {0.6f, (float)depth[k], 0.4f}};
     SimWorldDef def = sim_default_world_def();
     def.particle_radius = (float)radius[k];
-    def.container = (SimContainer){{0, 0, 0}, {0.6f, 1.2f, 0.4f}};
+    def.container = (SimContainer){{0, 0, 0}, {0.6f, 1.6f, 0.4f}};
+    def.threads = 2;
     def.blocks = &block;
     def.block_count = 1;
     SimWorld *world = test_create(&def);

@@ -2,7 +2,7 @@
 // against sums over all pairs in double precision.
 #include "sim_test.h"
 
-#include "sim/world.h"
+#include "reference/stress.h"
 
 static const char *const names[4] = {"avx512", "avx2", "sse2", "scalar"};
 
@@ -113,26 +113,39 @@ static SimStep a_step(SimWorld *world) {
   step.omega = 0.6f;
   step.wall_answer = 1.4f;
   step.relaxation = 0.1f * world->cubic.lattice_gradient;
+  step.warm = step.dt * step.dt;
   return step;
 }
 
-// One iteration on a settled, jittered block: λ of Eq. 11, projected, and Δp of Eq. 14.
-static void an_iteration_matches_all_pairs(void **state) {
-  (void)state;
+// Where nothing was clamped (test_boundary), the velocity changed by the move.
+static void check_move(const SimWorld *world, const SimStep *step, const float *from, int32_t i, const double move[3]) {
+  const SimParticles *p = &world->particles;
+  for (int k = 0; k < 3 && !(p->near[i / SIM_CHUNK] & SIM_NEAR_BODY); k++) {
+    double moved = (double)p->now.next_velocity[k][i] * (double)step->dt, to = (double)from[4 * i + k] + move[k];
+    double low = (double)world->def.container.min[k] + 0.025, high = (double)world->def.container.max[k] - 0.025;
+    if (to >= low && to <= high && fabs(moved - move[k]) > 2e-8)
+      fail_msg("move of %d along %d: %g, %g", i, k, move[k], moved);
+  }
+}
+
+// One iteration on a settled, jittered block: λ of Eq. 11, projected, with a share of the last one where `over` is above 1, and
+// Δp of Eq. 14.
+static void iterate(float over) {
   SimWorld *world = make_world(sim_wide());
   SimParticles *p = &world->particles;
   SimStep step = a_step(world);
   int32_t n = p->count;
-  double longest = 0, scale = 0, *lambda = calloc((size_t)n, sizeof *lambda);
+  double longest = 0, scale = 0, most = 0, *lambda = calloc((size_t)n, sizeof *lambda);
+  step.over = over;
   for (int32_t i = 0; i < n; i++) {
     p->now.pressure[i] = -1e-6f * (float)(i % 7); // some of it has to be taken back
     p->density[i] = 0.001f * (float)(i % 3);      // inherited
+    p->second[4 * i + 3] = 1e-6f * (float)(i % 5 - 2); // the last change
     for (int k = 0; k < 3; k++) p->now.next_velocity[k][i] = 0;
-  }
-  for (int32_t i = 0; i < n; i++) {
     Sums sums = sums_at(world, p->first, i);
     double before = (double)p->now.pressure[i], excess = sums.density - 1 - (double)p->density[i];
-    double after = before - 0.6 * excess / (sums.squares + (double)step.relaxation);
+    double change = -0.6 * excess / (sums.squares + (double)step.relaxation);
+    double after = before + (double)over * change + ((double)over - 1) * (double)p->second[4 * i + 3];
     lambda[i] = (after < 0 ? after : 0) - before;
     scale = fmax(scale, fabs(lambda[i]));
   }
@@ -143,31 +156,120 @@ static void an_iteration_matches_all_pairs(void **state) {
 
   sim_particles_pad(p, p->second);
   sim_parallel_max(1, n, 1, step.wide->pbf_correct, &step, &longest);
-  double most = 0, h = (double)world->cubic.h;
   for (int32_t i = 0; i < n; i++) {
-    double move[3] = {0}, length = 0;
-    for (int k = 0; k < 3 && p->near[i / SIM_CHUNK]; k++) move[k] = 1.4 * lambda[i] * (double)p->solid[4 * i + k];
-    for (int32_t j = 0; j < n; j++) {
-      double d[3], r = 0;
-      for (int k = 0; k < 3; k++) d[k] = (double)p->second[4 * i + k] - (double)p->second[4 * j + k], r += d[k] * d[k];
-      r = sqrt(r);
-      if (j == i || r >= h) continue;
-      double g = (double)world->cubic.volume * sim_kernel_cubic_derivative(r, h);
-      for (int k = 0; k < 3; k++) move[k] += (lambda[i] + lambda[j]) * g * d[k] / r;
-    }
-    for (int k = 0; k < 3; k++) {
-      double moved = (double)p->now.next_velocity[k][i] * (double)step.dt, to = (double)p->second[4 * i + k] + move[k];
-      double low = (double)world->def.container.min[k] + 0.025, high = (double)world->def.container.max[k] - 0.025;
-      if (to < low || to > high) continue; // clamped: test_boundary
-      length += move[k] * move[k];
-      if (p->near[i / SIM_CHUNK] & SIM_NEAR_BODY) continue;
-      if (fabs(moved - move[k]) > 2e-8) fail_msg("move of %d along %d: %g, %g", i, k, move[k], moved);
-    }
-    most = fmax(most, length);
+    double move[3];
+    reference_move(world, p->second, lambda, NULL, 1.4, i, move);
+    check_move(world, &step, p->second, i, move);
+    most = fmax(most, sqrt(move[0] * move[0] + move[1] * move[1] + move[2] * move[2]));
   }
-  assert_true(most > 0 && fabs(sqrt(longest) - sqrt(most)) < 0.2 * sqrt(most));
+  assert_true(most > 0 && fabs(sqrt(longest) - most) < 0.2 * most);
   free(lambda);
   sim_world_destroy(world);
+}
+
+static void an_iteration_matches_all_pairs(void **state) {
+  (void)state;
+  iterate(1);
+  iterate(1.4f);
+}
+
+// ---- The start of a substep --------------------------------------------------------------------------------------------
+
+// A state in `second`, predicted places in `first`, as the stages of a substep leave them.
+static void lay_out(SimWorld *world) {
+  SimParticles *p = &world->particles;
+  memcpy(p->second, p->first, 4 * sizeof(float) * (size_t)p->count);
+  for (int32_t i = 0; i < p->count; i++) {
+    p->now.pressure[i] = -1 - 0.1f * (float)(i % 7);
+    for (int k = 0; k < 3; k++) {
+      p->first[4 * i + k] += 1e-4f * (float)((i + k) % 5 - 2);
+      p->now.next_velocity[k][i] = 0;
+    }
+  }
+  sim_particles_pad(p, p->second);
+  sim_particles_pad(p, p->first);
+}
+
+static void the_start_matches_all_pairs(void **state) {
+  (void)state;
+  SimWorld *world = make_world(sim_wide());
+  SimParticles *p = &world->particles;
+  SimStep step = a_step(world);
+  int32_t n = p->count;
+  double longest = 0, *lambda = calloc((size_t)n, sizeof *lambda), (*shear)[3][3] = calloc((size_t)n, sizeof *shear);
+  lay_out(world);
+  float *compression = calloc((size_t)n, sizeof *compression);
+  for (int32_t i = 0; i < n; i++) compression[i] = (float)fmax(0, sums_at(world, p->second, i).density - 1);
+  sim_parallel_for(1, n, step.wide->pbf_inherit, &step);
+  sim_particles_pad_zero(p, p->solid);
+  for (int32_t i = 0; i < n; i++) {
+    double expected[3][3];
+    lambda[i] = (double)p->now.pressure[i];
+    if (fabs(lambda[i] + 16e-6 * (1 + 0.1 * (i % 7))) > 1e-9) fail_msg("lambda of %d: %g", i, lambda[i]);
+    if (p->first[4 * i + 3] != p->now.pressure[i]) fail_msg("lambda of %d is not beside its place", i);
+    if (fabsf(compression[i] - p->density[i]) > 2e-6f) fail_msg("compression of %d", i);
+    reference_unpack(p->solid + 4 * i, shear[i]);
+    reference_shear(world, p->second, i, expected);
+    for (int k = 0; k < 3; k++)
+      for (int l = 0; l < 3; l++)
+        if (fabs(shear[i][k][l] / lambda[i] - expected[k][l]) > 1e-4 + 0.01 * fabs(expected[k][l]))
+          fail_msg("shear of %d: %g, %g", i, shear[i][k][l] / lambda[i], expected[k][l]);
+  }
+  sim_parallel_max(1, n, 1, step.wide->pbf_start, &step, &longest);
+  for (int32_t i = 0; i < n; i++) {
+    double move[3];
+    reference_move(world, p->first, lambda, shear, 1.4, i, move);
+    check_move(world, &step, p->first, i, move);
+  }
+  free(compression);
+  free(shear);
+  free(lambda);
+  sim_world_destroy(world);
+}
+
+// A cube of lattice, stretched about its middle by `factor`, and the particle nearest to the middle.
+static SimWorld *stretched_cube(const float factor[3], int32_t *centre) {
+  const float middle = 0.3f;
+  SimWorldDef def = test_def((const float[3]){1, 1, 1}, &block, (const float[3]){0.6f, 0.6f, 0.6f});
+  SimWorld *world = test_create(&def);
+  SimParticles *p = &world->particles;
+  SimError error;
+  double nearest = INFINITY;
+  for (int32_t i = 0; i < p->count; i++)
+    for (int k = 0; k < 3; k++) p->now.position[k][i] = middle + factor[k] * (p->now.position[k][i] - middle);
+  world->settled = false;
+  assert_true(sim_world_settle(world, &error));
+  for (int32_t i = 0; i < p->count; i++) {
+    double d = 0;
+    for (int k = 0; k < 3; k++) d += pow((double)(p->first[4 * i + k] - middle), 2);
+    if (d < nearest) nearest = d, *centre = i;
+  }
+  return world;
+}
+
+// What it is for, on paper: the stress of a particle in a lattice is the same in all directions, E = 0. In one that is stretched
+// by a tenth along x and squeezed along y it is not, and (1 + E) M leaves at most a tenth of the difference.
+static void stress_is_the_same_in_all_directions(void **state) {
+  (void)state;
+  for (int stretched = 0; stretched < 2; stretched++) {
+    const float factor[3] = {stretched ? 1.1f : 1, stretched ? 0.92f : 1, 1};
+    int32_t centre = 0;
+    SimWorld *world = stretched_cube(factor, &centre);
+    double m[3][3], e[3][3], stress[3][3] = {{0}};
+    SimStep step = a_step(world);
+      lay_out(world);
+    sim_parallel_for(1, world->particles.count, step.wide->pbf_inherit, &step);
+    reference_moment(world, world->particles.second, centre, m);
+    reference_unpack(world->particles.solid + 4 * centre, e);
+    double lambda = (double)world->particles.now.pressure[centre];
+    for (int k = 0; k < 3; k++)
+      for (int l = 0; l < 3; l++)
+        for (int q = 0; q < 3; q++) stress[k][l] += m[k][q] * ((q == l) + e[q][l] / lambda);
+    double before = fabs(m[0][0] - m[1][1]), after = fabs(stress[0][0] - stress[1][1]);
+    if (!stretched) assert_true(before < 1e-5 && fabs(e[0][0] / lambda) < 1e-5 && fabs(e[0][1] / lambda) < 1e-5);
+    if (stretched && !(before > 0.03 && after < 0.1 * before)) fail_msg("%g of %g are left", after, before);
+    sim_world_destroy(world);
+  }
 }
 
 int main(void) {
@@ -175,6 +277,8 @@ int main(void) {
       cmocka_unit_test(every_instruction_set_gives_the_same_bytes),
       cmocka_unit_test(density_matches_all_pairs),
       cmocka_unit_test(an_iteration_matches_all_pairs),
+      cmocka_unit_test(the_start_matches_all_pairs),
+      cmocka_unit_test(stress_is_the_same_in_all_directions),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

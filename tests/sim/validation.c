@@ -106,11 +106,12 @@ ColumnCollapse validate_column_collapse(SimSolver solver, double a, int across, 
 
 // ---- Standing wave ---------------------------------------------------------------------------------------------------
 
-// The water's centre along x swings with the first mode. Its zeros, interpolated, give the period.
-static double measured_period(SimWorld *world, double length, double step, int steps) {
+// The water's centre along x swings with the first mode. Its zeros, interpolated, give the period, and its largest distance
+// between two zeros the height.
+static StandingWave swing(SimWorld *world, double length, double step, int steps) {
   SimFrameBuffer *buffer = sim_frame_buffer_create();
   SimError error = {""};
-  double last = 0, first_zero = 0, last_zero = 0;
+  double last = 0, first_zero = 0, last_zero = 0, most = 0, first_most = 0, last_most = 0;
   int zeros = 0;
   for (int s = 0; s < steps; s++) {
     if (!sim_world_advance(world, step, &error)) fail_msg("%s", error.message);
@@ -120,36 +121,42 @@ static double measured_period(SimWorld *world, double length, double step, int s
     double now = centre - length / 2;
     if (s > 0 && (now > 0) != (last > 0)) {
       double zero = frame->time - step * now / (now - last);
-      if (zeros++ == 0) first_zero = zero;
+      if (zeros == 0) first_zero = zero;
+      if (zeros == 1) first_most = most;
       last_zero = zero;
+      last_most = most;
+      zeros++;
+      most = 0;
     }
+    most = fmax(most, fabs(now));
     last = now;
   }
   sim_frame_buffer_destroy(buffer);
   if (zeros < 4) fail_msg("%d zeros only", zeros);
-  return 2 * (last_zero - first_zero) / (zeros - 1);
+  return (StandingWave){2 * (last_zero - first_zero) / (zeros - 1), pow(last_most / first_most, 1.0 / (zeros - 2))};
 }
 
-double validate_standing_wave(SimSolver solver, int layers) {
+StandingWave validate_standing_wave(SimSolver solver, int layers, double amplitude, double jitter) {
   SimWorldDef def = sim_default_world_def();
-  const double d = 0.02, depth = layers * d, length = 2 * depth, amplitude = 0.15 * depth;
+  const double d = 0.02, depth = layers * d, length = 2 * depth;
   int columns = 2 * layers;
   SimBlockDef *blocks = calloc((size_t)columns, sizeof *blocks);
   for (int k = 0; k < columns; k++) { // columns whose height follows the mode
-    double level = depth + amplitude * cos(PI * (k + 0.5) / columns);
+    double level = depth + amplitude * depth * cos(PI * (k + 0.5) / columns);
     blocks[k] = (SimBlockDef){{(float)(k * d), 0, 0}, {(float)((k + 1) * d), (float)(d * round(level / d)), (float)(6 * d)}};
   }
   def.solver = solver;
   def.threads = 2;
-  def.jitter = 0.2f;
+  def.jitter = (float)jitter;
   def.particle_radius = (float)(d / 2);
   def.container = (SimContainer){{0, 0, 0}, {(float)length, (float)(2 * depth), (float)(6 * d)}};
   def.blocks = blocks;
   def.block_count = columns;
   SimWorld *world = test_create(&def);
   double k = PI / length, expected = 2 * PI / sqrt(G * k * tanh(k * depth));
-  double period = measured_period(world, length, expected / 60, 60 * 4);
+  StandingWave wave = swing(world, length, expected / 60, 60 * 4);
+  wave.period /= expected;
   sim_world_destroy(world);
   free(blocks);
-  return period / expected;
+  return wave;
 }

@@ -17,10 +17,13 @@ typedef struct ColumnCollapse {
 /// `across` particles in the base, `deep` particles across the channel; a in m.
 ColumnCollapse validate_column_collapse(SimSolver solver, double a, int across, int deep);
 
-/// A sloshing tank, jittered (a perfect lattice is a crystal that resists shear, and its small waves run up to 7 % fast), with
-/// an amplitude of 0.15 depths, of length 2·depth, with `layers` particles of depth: the first mode's period over that of linear theory, the
-/// mean of four,
-/// ω² = g k tanh(k depth), k = π/length.
-double validate_standing_wave(SimSolver solver, int layers);
+/// A sloshing tank.
+typedef struct StandingWave {
+  double period; ///< over that of linear theory, ω² = g k tanh(k depth), k = π/length: the mean over some periods
+  double kept;   ///< of the swing's height after half a period, the mean likewise
+} StandingWave;
+
+/// The first mode in a tank of length 2·depth with `layers` particles of depth; `amplitude` in depths, `jitter` in spacings.
+StandingWave validate_standing_wave(SimSolver solver, int layers, double amplitude, double jitter);
 
 #endif
