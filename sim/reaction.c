@@ -218,9 +218,9 @@ static void weigh_kernel(int32_t begin, int32_t end, const void *context) {
 }
 
 // A particle of the layer cannot but follow the surface's moves along its normal n: as a row, n and r × n. Its weight falls
-// from LAYERS at the first layer's place to 0 out of reach: the water behind it follows too, but is out of reach. Cubes of 20 kg/m³
-// let go deep under water explode where the first layer counts once; where it counts twice most do not, and those of
-// 40 are well behaved.
+// from LAYERS at the first layer's place to 0 out of reach: the water behind it follows too, but is out of reach. Cubes of
+// 20 kg/m³ let go deep under water explode where the first layer counts once; where it counts twice most do not, and those
+// of 40 are well behaved.
 #define LAYERS 2.0
 
 static double layer_row(const SimReaction *reaction, const float gradient[3], const double arm[3], double row[6]) {

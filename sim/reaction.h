@@ -1,7 +1,8 @@
 // What the water gives to floating bodies: the opposite of everything that these bodies do to particles.
 //
 // Whatever changes a particle's velocity on behalf of a floating body, the pressure term κ λ_i ∇f of its share f of the
-// particle's density, what it adds along its surface, or the hard clamp, is noted per particle as a displacement, the change of velocity times dt. After each
+// particle's density, what it adds along its surface, or the hard clamp, is noted per particle as a displacement, the change
+// of velocity times dt. After each
 // sweep over the particles sim_reaction_collect turns the notes into impulses −m Δx/dt at the particles' places and adds them
 // up per body: one note is one equal and opposite push, so fluid and bodies together keep their momentum to rounding. (The
 // pressure between two particles is theirs alone and needs no note.)

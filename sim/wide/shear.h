@@ -119,7 +119,8 @@ static inline void shear_sum(const SimStep *step, const float *four, int32_t i, 
     Tensor shear = shear_unpack(word);
     SimF dx = own[0] - other[0], dy = own[1] - other[1], dz = own[2] - other[2];
     spline(&s, dx * dx + dy * dy + dz * dz, &w, &over_r);
-    SimF lambda = own[3] + other[3], xy = own_shear.xy + shear.xy, xz = own_shear.xz + shear.xz, yz = own_shear.yz + shear.yz;
+    SimF lambda = own[3] + other[3];
+    SimF xy = own_shear.xy + shear.xy, xz = own_shear.xz + shear.xz, yz = own_shear.yz + shear.yz;
     dx = dx * over_r, dy = dy * over_r, dz = dz * over_r;
     sum[0] = sum[0] + (lambda + own_shear.xx + shear.xx) * dx + xy * dy + xz * dz;
     sum[1] = sum[1] + xy * dx + (lambda + own_shear.yy + shear.yy) * dy + yz * dz;
