@@ -13,7 +13,7 @@
 #define REST_MOVE 0.01f
 // And the speed √(p/ρ) moves it by at most this share. Under pressure, particles that are pushed out of their places are pushed
 // back or on by λ times the kernel's second derivative, an oscillator with a frequency of some √(p/ρ)/spacing. A pool of 30
-// layers (0.48) keeps 7e-5 gH for a minute, one of 34 (0.54) boils.
+// layers (0.48) has 7e-5 gH left after 5 s, one of 34 (0.54) boils.
 #define STIFF_MOVE 0.48f
 // Lists are built anew when a particle has moved by this share of the support since. A pair that comes into reach
 // meanwhile is missed until the next substep. In the first second of a dam break 0.2 costs a fifth more sorts and searches, and

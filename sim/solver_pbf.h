@@ -51,11 +51,11 @@
 // particle's neighbours leave undone there has two parts.
 // - Across the wall: κ λ_i ∇f, with f what the wall adds to C_i. κ = 1 is the gradient of the constraints, but leaves the layer
 //   at a wall short of half the wall's pressure: its neighbours press it on with 2 λ, the wall answers with λ. It sticks.
-//   κ = 2 is the mirror image, and keeps a narrow pool stirring, because the mirrored particles do not move. κ = 1.7 is
-//   calmest. A wider support sees less of the layer's own: κ − 1 falls with its third power.
+//   κ = 2 is the mirror image, and keeps a narrow pool stirring, because the mirrored particles do not move. Of 1.4 to
+//   2, 1.7 loses least of a wave and keeps a pool as calm as any. A wider support sees less of the layer's own: κ − 1 falls with its third power.
 // - Along the wall: neighbours give a particle only 1 − f of the pressure's gradient, so the layer runs ahead of the water beside
 //   it. What they give along the wall is divided by 1 − f. (It is as if the particle's mass were less by f in these
-//   directions, so nothing gains energy by it; the momentum that is missing is the wall's.)
+//   directions; the momentum that is missing is the wall's.) Walls that face each other are left out: see sim_wall_answer.
 #ifndef LIDO_SIM_SOLVER_PBF_H
 #define LIDO_SIM_SOLVER_PBF_H
 

@@ -3,28 +3,20 @@
 
 #include <math.h>
 
-// V Σ W over the half lattice whose first layer is half a spacing behind the surface.
-static double half_lattice(double s, double spacing, double h) {
-  int reach = (int)ceil(h / spacing);
-  double sum = 0;
-  for (int k = 0; k <= reach; k++)
-    for (int j = -reach; j <= reach; j++)
-      for (int i = -reach; i <= reach; i++) {
-        double z = s + (k + 0.5) * spacing;
-        sum += sim_kernel_cubic(sqrt(z * z + spacing * spacing * (i * i + j * j)), h);
-      }
-  return sum;
-}
+/// Sums over the half lattice whose first layer is half a spacing behind the surface.
+typedef struct HalfLattice {
+  double value, moment; ///< Σ W, −Σ x_n ∂W/∂x_n
+} HalfLattice;
 
-// −Σ x_n ∂W/∂x_n over the same half lattice.
-static double half_lattice_moment(double s, double spacing, double h) {
+static HalfLattice half_lattice(double s, double spacing, double h) {
   int reach = (int)ceil(h / spacing);
-  double sum = 0;
+  HalfLattice sum = {0, 0};
   for (int k = 0; k <= reach; k++)
     for (int j = -reach; j <= reach; j++)
       for (int i = -reach; i <= reach; i++) {
         double z = s + (k + 0.5) * spacing, r = sqrt(z * z + spacing * spacing * (i * i + j * j));
-        sum -= sim_kernel_cubic_derivative(r, h) * z * z / r;
+        sum.value += sim_kernel_cubic(r, h);
+        sum.moment -= sim_kernel_cubic_derivative(r, h) * z * z / r;
       }
   return sum;
 }
@@ -43,9 +35,9 @@ static double second_moment(double spacing, double h, double volume) {
 // At the surface itself the half lattice gives not quite one half. It is blended so that f(0) = ½ and both sides meet;
 // from a quarter of a spacing on it is untouched.
 static double share_at(double s, double spacing, double h, double volume) {
-  double t = s / (0.25 * spacing), share = volume * half_lattice(s, spacing, h);
+  double t = s / (0.25 * spacing), share = volume * half_lattice(s, spacing, h).value;
   if (t >= 1) return share;
-  double at_surface = 0.5 / (volume * half_lattice(0, spacing, h));
+  double at_surface = 0.5 / (volume * half_lattice(0, spacing, h).value);
   return share * (at_surface + (1 - at_surface) * t * t * (3 - 2 * t));
 }
 
@@ -55,7 +47,7 @@ static void make_moments(SimWall *wall, const SimCubic *cubic) {
   for (int m = 0; m <= SIM_WALL_MOMENTS; m++) {
     double share = (double)m / SIM_WALL_MOMENTS, s = (double)k / (double)wall->inverse_step;
     while (k > 0 && (double)wall->share[k] < share) s = --k / (double)wall->inverse_step;
-    double moment = (double)cubic->volume * half_lattice_moment(s, (double)wall->spacing, (double)cubic->h) - share;
+    double moment = (double)cubic->volume * half_lattice(s, (double)wall->spacing, (double)cubic->h).moment - share;
     wall->moment[m] = share > 0 && share < 0.5 ? (float)fmax(moment, 0) : 0;
   }
 }
