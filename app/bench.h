@@ -11,7 +11,7 @@
 enum {
   BENCH_WARM_UP = 5, ///< frames that are run first and not counted
   BENCH_PASSES = 64, ///< passes of the renderer
-  BENCH_ROWS = SIM_STAGE_COUNT + 2 * BENCH_PASSES + 2,
+  BENCH_ROWS = SIM_STAGE_COUNT + 2 * BENCH_PASSES + 3,
   BENCH_RUNS = 9 ///< numbers of threads: 1, 2, 4 … 256
 };
 

@@ -125,6 +125,20 @@ void scene_free(Scene *scene) {
 
 // ---- Use ------------------------------------------------------------------------------------------------------------
 
+static RenderRefraction refraction_settings(const SceneRefraction *scene) {
+  return (RenderRefraction){.count = scene->count,
+                            .scale = scene->scale,
+                            .lift = scene->lift,
+                            .smoothing = (RenderSmoothing)scene->smoothing,
+                            .sigma = scene->sigma,
+                            .window = scene->window,
+                            .reach = scene->reach,
+                            .iterations = scene->iterations,
+                            .view_dependent = scene->view_dependent,
+                            .splashes_apart = scene->splashes_apart,
+                            .surface_only = scene->surface_only};
+}
+
 RenderSettings scene_render_settings(const Scene *scene) {
   const SceneEnvironment *environment = &scene->environment;
   RenderSettings settings = render_default_settings();
@@ -147,6 +161,7 @@ RenderSettings scene_render_settings(const Scene *scene) {
   settings.tone_map = (RenderToneMap)scene->render.tone_map;
   settings.exposure = scene->render.exposure;
   settings.points.scale = scene->render.points.scale;
+  settings.refraction = refraction_settings(&scene->render.refraction);
   return settings;
 }
 

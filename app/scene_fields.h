@@ -275,7 +275,7 @@
     "Checker: colour elsewhere.")
 
 #define SCENE_RENDER(F, O, L, V, S) \
-  F(S, STYLE,     style,           "",         "",                 "\"points\"", \
+  F(S, STYLE,     style,           "",         "",                 "\"refraction\"", \
     "How the water is drawn.") \
   F(S, CHOICE,    tone_map,        "",         "none | filmic",    "\"filmic\"", \
     "none: pictures hold 255 × the linear value, for measurements.") \
@@ -285,7 +285,32 @@
     "How strongly the water takes away red, green and blue light.") \
   F(S, NUMBER,    refractive_index, "",        "[1, 3]",           "1.333", \
     "Of the water.") \
+  O(S, SceneRefraction, refraction, "The style refraction (Imai, Kanamori, Mitani 2016).") \
   O(S, ScenePoints, points,        "The style points.")
+
+#define SCENE_REFRACTION(F, O, L, V, S) \
+  F(S, INTEGER,   count,           "",         "[1, 4]",           "4", \
+    "How often a ray is bent at most: 1, into the water; 2, out of it; 3 and 4, into and out of what lies behind.") \
+  F(S, NUMBER,    scale,           "",         "[0.5, 2]",         "1.2", \
+    "Of the ellipsoids; 1: as in the paper, where no semi-axis is longer than 1.2 radii.") \
+  F(S, NUMBER,    lift,            "radii",    "[0, 2]",           "0.8", \
+    "How far ellipsoids at the surface are moved outwards, to the level that their smoothed centres have left; 0: as in the paper.") \
+  F(S, CHOICE,    smoothing,       "", "regression | plane_fit | bilateral | narrow_range | none", "\"regression\"", \
+    "Filter of the depth maps: lines through the inverse depth; the paper's planes; Imai 2014; Truong & Yuksel 2018.") \
+  F(S, NUMBER,    sigma,           "radii",    "[0.001, 100]",     "5.3", \
+    "plane_fit (Eq. 2), bilateral: differences in depth that still count as one surface.") \
+  F(S, INTEGER,   window,          "",         "[3, 63]",          "9", \
+    "plane_fit, bilateral: taps across the window, odd; an even number is one less than it makes.") \
+  F(S, NUMBER,    reach,           "radii",    "[0, 50]",          "0", \
+    "plane_fit: half of the window, the same in the world however far it is; 0: the taps are neighbouring pixels.") \
+  F(S, INTEGER,   iterations,      "",         "[1, 50]",          "2", \
+    "plane_fit, bilateral, narrow_range: how often.") \
+  F(S, SWITCH,    view_dependent,  "",         "",                 "true", \
+    "plane_fit: weights by depth (Eq. 2); off: by distance (section 5).") \
+  F(S, SWITCH,    splashes_apart,  "",         "",                 "true", \
+    "Splashes have depth maps of their own; off: one surface for all, as in Imai 2014.") \
+  F(S, SWITCH,    surface_only,    "",         "",                 "true", \
+    "Draw only the particles near the surface; off: all, which looks the same.")
 
 #define SCENE_POINTS(F, O, L, V, S) \
   F(S, NUMBER,    scale,           "radii",    "[0.1, 5]",         "1.25", \
@@ -376,6 +401,7 @@
   T(SceneCamera, SCENE_CAMERA) \
   T(SceneLight, SCENE_LIGHT) \
   T(SceneEnvironment, SCENE_ENVIRONMENT) \
+  T(SceneRefraction, SCENE_REFRACTION) \
   T(ScenePoints, SCENE_POINTS) \
   T(SceneRender, SCENE_RENDER) \
   T(ScenePush, SCENE_PUSH) \

@@ -61,6 +61,18 @@ static void put_passes(FILE *file, Render *render) {
   fputc(']', file);
 }
 
+// What the style says of the picture: in "refraction" the share of pixels in each order of bodies.
+static void put_figures(FILE *file, Render *render) {
+  RenderFigure figures[MAX_PASSES];
+  int32_t count = render_figures(render, figures, MAX_PASSES);
+  fputs(", \"figures\": {", file);
+  for (int32_t i = 0; i < count && i < MAX_PASSES; i++) {
+    fprintf(file, "%s\"%s\"", i ? ", " : "", figures[i].name);
+    put_number(file, ": ", figures[i].value);
+  }
+  fputc('}', file);
+}
+
 void stats_frame(Stats *stats, const SimFrame *frame, SimWorld *world, Render *render) {
   FILE *file = output_file(stats->output);
   fprintf(file, "{\"frame\": %" PRId64, frame->index);
@@ -71,10 +83,12 @@ void stats_frame(Stats *stats, const SimFrame *frame, SimWorld *world, Render *r
   else
     fputs(", \"density_error\": null, \"energy\": null, \"max_speed\": null, \"substeps\": null, \"stage_ms\": null",
           file);
-  if (render)
+  if (render) {
     put_passes(file, render);
-  else
-    fputs(", \"pass_ms\": null", file);
+    put_figures(file, render);
+  } else {
+    fputs(", \"pass_ms\": null, \"figures\": null", file);
+  }
   fputs("}\n", file);
 }
 

@@ -1,7 +1,8 @@
 // --stats FILE: one JSON object per line and frame, for plots and for tests.
 //
 // Keys: frame, time (s), particles; and where the water is being simulated: density_error {mean, max} (relative),
-// energy {kinetic, potential} (J), max_speed (m/s), substeps, stage_ms {…}; where it is drawn: pass_ms [{name, gpu, cpu}].
+// energy {kinetic, potential} (J), max_speed (m/s), substeps, stage_ms {…}; where it is drawn: pass_ms [{name, gpu, cpu}] and
+// figures {…}, what the style tells of its picture: of refraction the share of the water's pixels in each order of bodies.
 // What is not known (a frame read from a file has no energy) is null. The file appears when the run ends.
 #ifndef LIDO_APP_STATS_H
 #define LIDO_APP_STATS_H

@@ -43,7 +43,7 @@ static bool draw_world(RenderPicture *picture, RenderError *error) {
   const GpuProgramDesc floor = {.label = "floor", .file = "floor.glsl", .defines = picture->defines};
   const GpuProgramDesc sky = {.label = "sky", .file = "backdrop.glsl", .defines = picture->defines};
   GpuDraw draw = {.target = &background->target, .in = sunlit_inputs(picture)};
-  gpu_clear_depth(&background->target);
+  gpu_clear_depth(&background->target, GPU_FARTHEST);
   if (picture->settings->floor != RENDER_FLOOR_NONE) {
     if (!gpu_program_prepare(&background->floor_program, &floor, error)) return false;
     draw.program = &background->floor_program;

@@ -15,20 +15,22 @@
 
 #define GPU_MAX_PASSES 32
 
-/// Time of one pass: two GPU timestamps and the CPU time between them.
+/// Time of one pass: two GPU timestamps, the calling thread's time between them, and the processor time of all threads.
 typedef struct GpuPass {
   const char *name;
   unsigned query[2];
-  double cpu_milliseconds;
+  double cpu_milliseconds, processor_milliseconds;
 } GpuPass;
 
 /// What belongs to the context as a whole. Must not move in memory: the driver's debug callback points to it.
 typedef struct Gpu {
   unsigned vertex_array; // empty: shaders fetch their vertices themselves
   unsigned params;       // uniform buffer of the draw at hand
+  bool software;         // drawn by the processor: Mesa's llvmpipe or softpipe
   int32_t error_count;   // errors and warnings reported by the driver
   char description[256]; // vendor / renderer / version
   char last_error[256];  // the driver's words for the last of them
+  bool measuring;        // wait for the GPU at the end of every pass
   int32_t pass_count;    // passes timed since gpu_passes_restart
   GpuPass passes[GPU_MAX_PASSES];
 } Gpu;
@@ -49,7 +51,15 @@ double gpu_pass_milliseconds(const GpuPass *pass); ///< waits for the GPU
 
 // ---- Textures and targets --------------------------------------------------------------------------------------------
 
-typedef enum GpuFormat { GPU_RGBA8 = 0, GPU_RGBA16F, GPU_RGBA32F, GPU_R32F, GPU_DEPTH32F, GPU_FORMAT_COUNT } GpuFormat;
+typedef enum GpuFormat {
+  GPU_RGBA8 = 0,
+  GPU_RGBA16F,
+  GPU_RGBA32F,
+  GPU_RG32F,
+  GPU_R32F,
+  GPU_DEPTH32F,
+  GPU_FORMAT_COUNT
+} GpuFormat;
 
 typedef struct GpuTextureDesc {
   const char *label;
@@ -72,7 +82,7 @@ void gpu_texture_copy(const GpuTexture *from, const GpuTexture *to);
 /// Read all texels as floats, bottom row first: width·height·gpu_texture_channels values.
 void gpu_texture_read(const GpuTexture *texture, float *values);
 
-#define GPU_MAX_COLOURS 2
+#define GPU_MAX_COLOURS 3
 typedef struct GpuTargetDesc {
   const char *label;
   const GpuTexture *colour[GPU_MAX_COLOURS];
@@ -87,7 +97,8 @@ typedef struct GpuTarget {
 bool gpu_target_create(GpuTarget *target, const GpuTargetDesc *desc, RenderError *error);
 void gpu_target_destroy(GpuTarget *target);
 void gpu_clear_colour(const GpuTarget *target, int32_t index, const float rgba[4]);
-void gpu_clear_depth(const GpuTarget *target); ///< to infinitely far
+typedef enum GpuDepthClear { GPU_FARTHEST = 0, GPU_NEAREST } GpuDepthClear;
+void gpu_clear_depth(const GpuTarget *target, GpuDepthClear to); ///< to infinitely far, or to the near distance
 
 // ---- Buffers ---------------------------------------------------------------------------------------------------------
 
@@ -133,7 +144,8 @@ void gpu_program_destroy(GpuProgram *program);
 typedef enum GpuDepth {
   GPU_DEPTH_OFF = 0,
   GPU_DEPTH_TEST, // nearer fragments pass
-  GPU_DEPTH_WRITE // nearer fragments pass and are kept
+  GPU_DEPTH_WRITE, // nearer fragments pass and are kept
+  GPU_DEPTH_WRITE_FARTHEST // farther fragments pass and are kept
 } GpuDepth;
 
 typedef enum GpuBlend {
@@ -146,11 +158,12 @@ typedef enum GpuBlend {
 
 typedef enum GpuCull { GPU_CULL_NONE = 0, GPU_CULL_BACK, GPU_CULL_FRONT } GpuCull;
 
-#define GPU_MAX_BINDINGS 8
+#define GPU_MAX_TEXTURES 12
+#define GPU_MAX_STORAGE 8 // as many as every OpenGL 4.5 has
 /// Inputs of a draw or a dispatch. Entry i is bound to binding i of its kind; NULL entries are left unbound.
 typedef struct GpuInputs {
-  const GpuTexture *textures[GPU_MAX_BINDINGS]; // samplers
-  const GpuBuffer *storage[GPU_MAX_BINDINGS];   // shader storage blocks
+  const GpuTexture *textures[GPU_MAX_TEXTURES]; // samplers
+  const GpuBuffer *storage[GPU_MAX_STORAGE];    // shader storage blocks
   const GpuBuffer *frame;                       // uniform block 0: the Frame block of frame.glsl
   const void *params;                           // uniform block 1 (std140), copied
   size_t params_size;

@@ -77,6 +77,7 @@ static bool gpu_check_version(Gpu *gpu, RenderError *error) {
 bool gpu_create(Gpu *gpu, RenderError *error) {
   *gpu = (Gpu){0};
   if (!gpu_check_version(gpu, error)) return false;
+  gpu->software = strstr(gpu->description, "llvmpipe") != NULL || strstr(gpu->description, "softpipe") != NULL;
   glEnable(GL_DEBUG_OUTPUT);
 #ifdef RENDER_ABORT_ON_GL_ERROR
   glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
@@ -104,9 +105,9 @@ void gpu_destroy(Gpu *gpu) {
 
 // ---- Times of passes -------------------------------------------------------------------------------------------------
 
-static double now_milliseconds(void) {
+static double now_milliseconds(clockid_t clock) {
   struct timespec now;
-  clock_gettime(CLOCK_MONOTONIC, &now);
+  clock_gettime(clock, &now);
   return 1e3 * (double)now.tv_sec + 1e-6 * (double)now.tv_nsec;
 }
 
@@ -118,7 +119,8 @@ void gpu_pass_begin(Gpu *gpu, const char *name) {
   if (gpu->pass_count == GPU_MAX_PASSES) return;
   GpuPass *pass = &gpu->passes[gpu->pass_count];
   pass->name = name;
-  pass->cpu_milliseconds = -now_milliseconds();
+  pass->cpu_milliseconds = -now_milliseconds(CLOCK_MONOTONIC);
+  pass->processor_milliseconds = -now_milliseconds(CLOCK_PROCESS_CPUTIME_ID);
   glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 0, -1, name);
   glQueryCounter(pass->query[0], GL_TIMESTAMP);
 }
@@ -128,7 +130,9 @@ void gpu_pass_end(Gpu *gpu) {
   GpuPass *pass = &gpu->passes[gpu->pass_count++];
   glQueryCounter(pass->query[1], GL_TIMESTAMP);
   glPopDebugGroup();
-  pass->cpu_milliseconds += now_milliseconds();
+  if (gpu->measuring) glFinish();
+  pass->cpu_milliseconds += now_milliseconds(CLOCK_MONOTONIC);
+  pass->processor_milliseconds += now_milliseconds(CLOCK_PROCESS_CPUTIME_ID);
 }
 
 double gpu_pass_milliseconds(const GpuPass *pass) {

@@ -29,8 +29,8 @@ static void set_depth(GpuDepth depth) {
   glDepthRange(0, 1);
   glEnable(GL_DEPTH_CLAMP);
   set_switch(GL_DEPTH_TEST, depth != GPU_DEPTH_OFF);
-  glDepthFunc(GL_GEQUAL);
-  glDepthMask(depth == GPU_DEPTH_WRITE);
+  glDepthFunc(depth == GPU_DEPTH_WRITE_FARTHEST ? GL_LEQUAL : GL_GEQUAL);
+  glDepthMask(depth == GPU_DEPTH_WRITE || depth == GPU_DEPTH_WRITE_FARTHEST);
 }
 
 static void set_blend(GpuBlend blend) {
@@ -52,9 +52,11 @@ static void set_cull(GpuCull cull) {
 }
 
 static void set_inputs(const Gpu *gpu, const GpuInputs *in) {
-  for (GLuint i = 0; i < GPU_MAX_BINDINGS; ++i) {
+  for (GLuint i = 0; i < GPU_MAX_TEXTURES; ++i) {
     glBindTextureUnit(i, in->textures[i] != NULL ? in->textures[i]->id : 0);
     glBindSampler(i, 0);
+  }
+  for (GLuint i = 0; i < GPU_MAX_STORAGE; ++i) {
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, i, in->storage[i] != NULL ? in->storage[i]->id : 0);
   }
   glBindBufferBase(GL_UNIFORM_BUFFER, 0, in->frame != NULL ? in->frame->id : 0);
@@ -79,7 +81,7 @@ void gpu_draw(Gpu *gpu, const GpuDraw *draw) {
 void gpu_dispatch(Gpu *gpu, const GpuDispatch *dispatch) {
   assert(dispatch->program->id != 0);
   static const GLenum image_formats[GPU_FORMAT_COUNT] = {
-      [GPU_RGBA8] = GL_RGBA8, [GPU_RGBA16F] = GL_RGBA16F, [GPU_RGBA32F] = GL_RGBA32F, [GPU_R32F] = GL_R32F};
+      [GPU_RGBA8] = GL_RGBA8, [GPU_RGBA16F] = GL_RGBA16F, [GPU_RGBA32F] = GL_RGBA32F, [GPU_RG32F] = GL_RG32F, [GPU_R32F] = GL_R32F};
   set_inputs(gpu, &dispatch->in);
   glUseProgram(dispatch->program->id);
   for (GLuint i = 0; i < GPU_MAX_COLOURS && dispatch->output[i] != NULL; ++i) {
@@ -98,11 +100,11 @@ void gpu_clear_colour(const GpuTarget *target, int32_t index, const float rgba[4
   glClearNamedFramebufferfv(target->id, GL_COLOR, index, rgba);
 }
 
-void gpu_clear_depth(const GpuTarget *target) {
-  const float far = 0;
+void gpu_clear_depth(const GpuTarget *target, GpuDepthClear to) {
+  const float depth = to == GPU_NEAREST ? 1 : 0;
   glDisable(GL_SCISSOR_TEST);
   glDepthMask(GL_TRUE);
-  glClearNamedFramebufferfv(target->id, GL_DEPTH, 0, &far);
+  glClearNamedFramebufferfv(target->id, GL_DEPTH, 0, &depth);
 }
 
 void gpu_present(const GpuTarget *target, int32_t window_width, int32_t window_height) {

@@ -8,6 +8,7 @@ static const struct { GLenum internal, layout, type; int32_t channels; } formats
   [GPU_RGBA8]    = { GL_RGBA8,              GL_RGBA,            GL_UNSIGNED_BYTE, 4 },
   [GPU_RGBA16F]  = { GL_RGBA16F,            GL_RGBA,            GL_FLOAT,         4 },
   [GPU_RGBA32F]  = { GL_RGBA32F,            GL_RGBA,            GL_FLOAT,         4 },
+  [GPU_RG32F]    = { GL_RG32F,              GL_RG,              GL_FLOAT,         2 },
   [GPU_R32F]     = { GL_R32F,               GL_RED,             GL_FLOAT,         1 },
   [GPU_DEPTH32F] = { GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT,         1 },
 };

@@ -91,6 +91,7 @@ static bool add_body(RenderObstacles *obstacles, Body *bodies, const SimObstacle
     if (mesh < 0) return true;
     obstacles->mesh_of_body[obstacles->count - obstacles->first[SIM_MESH]] = mesh;
     reach = obstacles->meshes.meshes[mesh].reach;
+    body->half_size[0] = reach;
   } else {
     if (!size_body(body, o)) return true;
     const float *half = body->half_size;

@@ -51,10 +51,10 @@ static bool reserve(RenderParticles *particles, int32_t count, RenderError *erro
   return true;
 }
 
-static void add_to_bounds(RenderParticles *particles, const float p[3]) {
+static void add_to_bounds(RenderParticles *particles, const float p[3], float radius) {
   for (int k = 0; k < 3; ++k) {
-    particles->bounds_min[k] = fminf(particles->bounds_min[k], p[k]);
-    particles->bounds_max[k] = fmaxf(particles->bounds_max[k], p[k]);
+    particles->bounds_min[k] = fminf(particles->bounds_min[k], p[k] - radius);
+    particles->bounds_max[k] = fmaxf(particles->bounds_max[k], p[k] + radius);
   }
 }
 
@@ -74,7 +74,7 @@ static int32_t stage(RenderParticles *particles, const SimFrame *frame) {
     }
     sphere[3] = radius;
     colour[3] = spray_of(frame, i, mean_density, fast);
-    add_to_bounds(particles, p);
+    add_to_bounds(particles, p, radius);
     sphere += 4;
     colour += 4;
     ++taken;

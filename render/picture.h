@@ -38,7 +38,7 @@ typedef struct RenderParticles {
   GpuBuffer spheres; // (count) vec4: centre, radius of the particle at rest; m
   GpuBuffer colours; // (count) vec4: colour, linear; spray 0 … 1
   int32_t count;
-  float bounds_min[3], bounds_max[3]; // m, of the particles taken; min > max when there are none
+  float bounds_min[3], bounds_max[3]; // m, of the spheres taken; min > max when there are none
   float *staging;                     // (capacity, 8)
   int32_t capacity;
 } RenderParticles;
@@ -52,9 +52,27 @@ typedef struct RenderTiles {
   GpuBuffer mask; // (rows, columns) uint32: 1 or 0
   int32_t columns, rows;
 } RenderTiles;
-/// Input: the particles, drawn with `scale` times their radius. Output: picture->tiles.
-bool render_tiles_mark(RenderPicture *picture, float scale, RenderError *error);
+/// Spheres that will be drawn.
+typedef struct RenderTileMarks {
+  const GpuBuffer *spheres; // vec4 each: centre and radius, m
+  int32_t count, stride;    // stride: vec4s from one to the next
+  float scale;              // drawn with this times their radius
+} RenderTileMarks;
+/// Output: picture->tiles, of which none is marked.
+bool render_tiles_clear(RenderPicture *picture, RenderError *error);
+/// Output: picture->tiles, with those marked that the spheres may touch.
+bool render_tiles_mark(RenderPicture *picture, const RenderTileMarks *marks, RenderError *error);
 void render_tiles_destroy(RenderTiles *tiles);
+/// A pass over the pixels of the marked tiles (tile_pass.glsl). Of `desc` label, file and defines are taken. Output: the
+/// colours of `target`, which are `out`.
+typedef struct RenderTilePass {
+  GpuProgram *program;
+  GpuProgramDesc desc;
+  const GpuTarget *target;
+  const GpuTexture *out[GPU_MAX_COLOURS];
+  GpuInputs in; // without frame and tiles
+} RenderTilePass;
+bool render_tile_pass(RenderPicture *picture, const RenderTilePass *pass, RenderError *error);
 
 /// A triangle mesh on the GPU.
 typedef struct RenderMesh {

@@ -257,13 +257,25 @@ void render_text(Render *render, int32_t x, int32_t y, int32_t scale, const char
   gpu_collect_errors(&render->gpu);
 }
 
+void render_measure_passes(Render *render, bool on) {
+  render->gpu.measuring = on;
+}
+
 int32_t render_pass_times(Render *render, RenderPassTime *times, int32_t capacity) {
   const Gpu *gpu = &render->gpu;
   for (int32_t i = 0; i < gpu->pass_count && i < capacity; ++i) {
     const GpuPass *pass = &gpu->passes[i];
-    times[i] = (RenderPassTime){pass->name, gpu_pass_milliseconds(pass), pass->cpu_milliseconds};
+    times[i] = (RenderPassTime){pass->name, gpu_pass_milliseconds(pass), pass->cpu_milliseconds,
+                                pass->processor_milliseconds};
   }
   return gpu->pass_count;
+}
+
+int32_t render_figures(Render *render, RenderFigure *figures, int32_t capacity) {
+  int32_t row = 0;
+  while (render_styles[row] != NULL && render_styles[row] != render->style) ++row;
+  if (render_styles[row] == NULL || render->states[row] == NULL || render->style->figures == NULL) return 0;
+  return render->style->figures(render->states[row], figures, capacity);
 }
 
 int32_t render_gl_error_count(const Render *render) {

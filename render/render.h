@@ -47,6 +47,32 @@ typedef enum RenderFloor {
   RENDER_FLOOR_NONE = 2        ///< no floor: sky everywhere
 } RenderFloor;
 
+/// How the style "refraction" makes a smooth surface of bumpy particles.
+typedef enum RenderSmoothing {
+  RENDER_SMOOTHING_REGRESSION = 0,   ///< lines fitted to the inverse depth along rows and columns: the default
+  RENDER_SMOOTHING_PLANE_FIT = 1,    ///< iterated local planes (Imai et al. 2016, section 4.3)
+  RENDER_SMOOTHING_BILATERAL = 2,    ///< iterated bilateral filter (Green 2010, Imai et al. 2014)
+  RENDER_SMOOTHING_NARROW_RANGE = 3, ///< narrow-range filter (Truong & Yuksel 2018)
+  RENDER_SMOOTHING_NONE = 4          ///< the particles as they are
+} RenderSmoothing;
+
+/// The style "refraction" (Imai, Kanamori, Mitani 2016); make it with render_default_settings.
+typedef struct RenderRefraction {
+  int32_t count;             ///< most refractions along a ray, [1, 4], default 4
+  float scale;               ///< of the ellipsoids, [0.5, 2], default 1.2; 1: bounded by 1.2 radii, as in the paper
+  float lift;                ///< how far ellipsoids at the surface are moved outwards, radii, [0, 2], default 0.8: then the
+                             ///< picture's level is the water's; 0: they stay where smoothing has sunk them, as in the paper
+  RenderSmoothing smoothing;
+  float sigma;               ///< plane_fit (Eq. 2), bilateral: differences of depth that count, radii, (0, 100], default 5.3
+  int32_t window;            ///< plane_fit and bilateral: taps across the window, [3, 63], default 9; 8 is as good as 9
+  float reach;               ///< plane_fit: half of the window in particle radii, the same in the world however far it is,
+                             ///< [0, 50]; 0 (default): the taps are neighbouring pixels
+  int32_t iterations;        ///< plane_fit, bilateral, narrow_range: [1, 50], default 2
+  bool view_dependent;       ///< plane_fit: weights by depth (Eq. 2), the default, or by distance (section 5)
+  bool splashes_apart;       ///< splashes have depth maps of their own (default); off: one surface, as in Imai et al. 2014
+  bool surface_only;         ///< draw only particles near the surface (default); off: all, which looks the same
+} RenderRefraction;
+
 /// Everything about a picture that is not the water's shape or the eye. Colours are linear light.
 /// Make it with render_default_settings, change what you need.
 typedef struct RenderSettings {
@@ -75,6 +101,8 @@ typedef struct RenderSettings {
   // picture
   RenderToneMap tone_map;
   float exposure;              ///< factor before the curve, default 1, > 0
+
+  RenderRefraction refraction;
 
   // style "points"
   struct { float scale; } points; ///< sphere radius in particle radii, default 1.25, range [0.1, 5]
@@ -124,10 +152,23 @@ void render_text(Render *render, int32_t x, int32_t y, int32_t scale, const char
 
 // ---- Measuring -----------------------------------------------------------------------------------------------------------
 
-typedef struct RenderPassTime { const char *name; double gpu_milliseconds, cpu_milliseconds; } RenderPassTime;
+typedef struct RenderPassTime {
+  const char *name;
+  double gpu_milliseconds;       ///< between two timestamps of the GPU
+  double cpu_milliseconds;       ///< of the calling thread's clock
+  double processor_milliseconds; ///< of processor time, all threads of the process: what a software renderer costs
+} RenderPassTime;
+/// Wait for the GPU at the end of every pass, so that the times of a pass are its own. Slower; off at first.
+void render_measure_passes(Render *render, bool on);
 /// Times of the passes of the last draw, in order. GPU times wait for the GPU: ask only when you want them.
 /// Returns the number of passes; at most `capacity` are written.
 int32_t render_pass_times(Render *render, RenderPassTime *times, int32_t capacity);
+
+/// A number that the style tells of its last picture.
+typedef struct RenderFigure { const char *name; double value; } RenderFigure;
+/// Of "refraction": the share of the water's pixels in which a ray went through "splash" or "aggregated" water alone, or
+/// through two bodies ("splash_aggregated" …). Waits for the GPU. Returns how many there are; at most `capacity` are written.
+int32_t render_figures(Render *render, RenderFigure *figures, int32_t capacity);
 
 /// Errors and warnings that the driver reported (KHR_debug) since creation; 0 in a correct program.
 int32_t render_gl_error_count(const Render *render);

@@ -25,6 +25,16 @@ RenderSettings render_default_settings(void) {
       .refractive_index = 1.333f,
       .tone_map = RENDER_TONE_FILMIC,
       .exposure = 1,
+      .refraction = {.count = 4,
+                     .scale = 1.2f,
+                     .lift = 0.8f,
+                     .smoothing = RENDER_SMOOTHING_REGRESSION,
+                     .sigma = 5.3f,
+                     .window = 9,
+                     .iterations = 2,
+                     .view_dependent = true,
+                     .splashes_apart = true,
+                     .surface_only = true},
       .points = {.scale = 1.25f},
   };
 }
@@ -51,6 +61,18 @@ static bool is_zero(const float v[3]) {
   return v[0] == 0 && v[1] == 0 && v[2] == 0;
 }
 
+static bool refraction_check(const RenderRefraction *r, RenderError *error) {
+  if (r->count < 1 || r->count > 4) return gpu_fail(error, "the number of refractions must be in [1, 4]");
+  if (!in_range(r->scale, 0.5f, 2)) return gpu_fail(error, "the scale of ellipsoids must be in [0.5, 2]");
+  if (!in_range(r->lift, 0, 2)) return gpu_fail(error, "the lift of ellipsoids must be in [0, 2] radii");
+  if ((unsigned)r->smoothing > RENDER_SMOOTHING_NONE) return gpu_fail(error, "unknown smoothing %d", (int)r->smoothing);
+  if (!in_range(r->sigma, 1e-3f, 100)) return gpu_fail(error, "sigma must be in [0.001, 100] radii");
+  if (r->window < 3 || r->window > 63) return gpu_fail(error, "the window of the smoothing must be in [3, 63]");
+  if (!in_range(r->reach, 0, 50)) return gpu_fail(error, "the reach of the smoothing must be in [0, 50] radii");
+  if (r->iterations < 1 || r->iterations > 50) return gpu_fail(error, "iterations must be in [1, 50]");
+  return true;
+}
+
 bool render_settings_check(const RenderSettings *s, RenderError *error) {
   if (s->cookie != SETTINGS_COOKIE) return gpu_fail(error, "settings were not made by render_default_settings");
   if (!all_finite(s->sun_direction, 3) || is_zero(s->sun_direction)) {
@@ -72,7 +94,7 @@ bool render_settings_check(const RenderSettings *s, RenderError *error) {
   if (!in_range(s->refractive_index, 1, 3)) return gpu_fail(error, "the refractive index must be in [1, 3]");
   if (!in_range(s->exposure, 1e-6f, 1e6f)) return gpu_fail(error, "the exposure must be in [0.000001, 1000000]");
   if (!in_range(s->points.scale, 0.1f, 5)) return gpu_fail(error, "the scale of points must be in [0.1, 5]");
-  return true;
+  return refraction_check(&s->refraction, error);
 }
 
 bool render_view_check(const RenderView *view, RenderError *error) {

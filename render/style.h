@@ -16,6 +16,7 @@ typedef struct RenderStyle {
   int32_t layer_count;
   bool (*resize)(void *state, const RenderPicture *picture, RenderError *error); // make what depends on the size
   bool (*draw)(void *state, RenderPicture *picture, RenderError *error);         // into picture->target
+  int32_t (*figures)(const void *state, RenderFigure *figures, int32_t capacity); // of the last picture; may be NULL
   void (*destroy)(void *state);
 } RenderStyle;
 

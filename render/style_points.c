@@ -80,7 +80,8 @@ static bool points_draw(void *state, RenderPicture *picture, RenderError *error)
   const float scale = picture->settings->points.scale;
 
   gpu_pass_begin(picture->gpu, "splat");
-  bool ok = render_tiles_mark(picture, scale, error) &&
+  const RenderTileMarks marks = {&picture->particles.spheres, picture->particles.count, 1, scale};
+  bool ok = render_tiles_clear(picture, error) && render_tiles_mark(picture, &marks, error) &&
             render_splat_surface(picture, &points->splat_program, scale, &points->surface_target, error);
   gpu_pass_end(picture->gpu);
 

@@ -4,9 +4,11 @@
 #include <string.h>
 
 extern const RenderStyle style_points;
+extern const RenderStyle style_refraction;
 
 const RenderStyle *const render_styles[] = {
     &style_points,
+    &style_refraction,
     NULL,
 };
 

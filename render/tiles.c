@@ -9,10 +9,13 @@
 // std140 block of tiles.glsl
 typedef struct TileParams {
   float scale, count, row, columns;
-  float tile_size, unused[3];
+  float tile_size, stride, unused[2];
 } TileParams;
 
-static bool clear_mask(RenderTiles *tiles, RenderError *error) {
+bool render_tiles_clear(RenderPicture *picture, RenderError *error) {
+  RenderTiles *tiles = &picture->tiles;
+  tiles->columns = (picture->width + RENDER_TILE_SIZE - 1) / RENDER_TILE_SIZE;
+  tiles->rows = (picture->height + RENDER_TILE_SIZE - 1) / RENDER_TILE_SIZE;
   const size_t count = (size_t)tiles->columns * (size_t)tiles->rows;
   uint32_t *zeros = calloc(count, sizeof *zeros);
   if (zeros == NULL) return gpu_fail(error, "out of memory for %zu tiles", count);
@@ -21,24 +24,47 @@ static bool clear_mask(RenderTiles *tiles, RenderError *error) {
   return written;
 }
 
-bool render_tiles_mark(RenderPicture *picture, float scale, RenderError *error) {
+bool render_tiles_mark(RenderPicture *picture, const RenderTileMarks *marks, RenderError *error) {
   RenderTiles *tiles = &picture->tiles;
-  const int32_t count = picture->particles.count;
-  tiles->columns = (picture->width + RENDER_TILE_SIZE - 1) / RENDER_TILE_SIZE;
-  tiles->rows = (picture->height + RENDER_TILE_SIZE - 1) / RENDER_TILE_SIZE;
   const GpuProgramDesc desc = {.label = "tiles", .file = "tiles.glsl", .compute = true};
-  if (!clear_mask(tiles, error) || !gpu_program_prepare(&tiles->program, &desc, error)) return false;
-  if (count == 0) return true;
-  const TileParams params = {scale, (float)count, ROW, (float)tiles->columns, RENDER_TILE_SIZE, {0}};
+  if (!gpu_program_prepare(&tiles->program, &desc, error)) return false;
+  if (marks->count == 0) return true;
+  const TileParams params = {.scale = marks->scale,
+                             .count = (float)marks->count,
+                             .row = ROW,
+                             .columns = (float)tiles->columns,
+                             .tile_size = RENDER_TILE_SIZE,
+                             .stride = (float)marks->stride};
   gpu_dispatch(picture->gpu, &(GpuDispatch){
                                  .program = &tiles->program,
                                  .width = ROW,
-                                 .height = (count + ROW - 1) / ROW,
-                                 .in = {.storage = {&picture->particles.spheres, &tiles->mask},
+                                 .height = (marks->count + ROW - 1) / ROW,
+                                 .in = {.storage = {marks->spheres, &tiles->mask},
                                         .frame = &picture->uniforms,
                                         .params = &params,
                                         .params_size = sizeof params},
                              });
+  return true;
+}
+
+bool render_tile_pass(RenderPicture *picture, const RenderTilePass *pass, RenderError *error) {
+  const RenderTiles *tiles = &picture->tiles;
+  GpuProgramDesc desc = pass->desc;
+  GpuInputs in = pass->in;
+  desc.compute = !picture->gpu->software;
+  in.storage[7] = &tiles->mask;
+  in.frame = &picture->uniforms;
+  if (!gpu_program_prepare(pass->program, &desc, error)) return false;
+  if (desc.compute) {
+    GpuDispatch dispatch = {.program = pass->program, .width = picture->width, .height = picture->height, .in = in};
+    for (int i = 0; i < GPU_MAX_COLOURS; ++i) dispatch.output[i] = pass->out[i];
+    gpu_dispatch(picture->gpu, &dispatch);
+  } else {
+    gpu_draw(picture->gpu, &(GpuDraw){.program = pass->program,
+                                      .target = pass->target,
+                                      .vertices = 6 * tiles->columns * tiles->rows,
+                                      .in = in});
+  }
   return true;
 }
 

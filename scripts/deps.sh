@@ -9,7 +9,7 @@ build='gcc libc6-dev make cmake pkg-config
   libassimp-dev
   libgl1-mesa-dri libegl1 libegl-mesa0 libgl1 ffmpeg'
 optional='libosmesa6-dev' # left Mesa in 25.1
-test='libcmocka-dev clang libomp-dev git xvfb xauth xdotool python3 python3-meshio python3-jsonschema'
+test='libcmocka-dev libembree-dev clang libomp-dev git xvfb xauth xdotool python3 python3-meshio python3-jsonschema'
 
 want="$build"
 if [ "${1:-}" = test ]; then

@@ -1,7 +1,8 @@
 // Solid bodies as shaders know them: struct Body of obstacles.c.
 struct Body {
   vec4 position;        // m; –
-  vec4 half_size;       // m, of the box around it, along its own axes; stairs: steps; capsule: half its straight part, m
+  vec4 half_size;       // m, of the box around it, along its own axes; stairs: steps; capsule: half its straight part, m;
+                        // mesh: x is its reach, m
   vec4 rotation;        // quaternion
   vec4 colour;          // linear; –
 };

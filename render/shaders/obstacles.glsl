@@ -33,10 +33,22 @@ void main() {
 #include "solids.glsl"
 flat in int index;
 
+#if SHAPE == 0
+#define MEET meet_box
+#elif SHAPE == 1
+#define MEET meet_sphere
+#elif SHAPE == 2
+#define MEET meet_cylinder
+#elif SHAPE == 3
+#define MEET meet_capsule
+#elif SHAPE == 4
+#define MEET meet_stairs
+#endif
+
 vec2 meet_world(vec3 origin, vec3 ray, float from, out vec3 normal) {
   Body body = bodies[index];
   vec4 back = vec4(-body.rotation.xyz, body.rotation.w);
-  vec2 t = meet(body, rotate(back, origin - body.position.xyz), rotate(back, ray), from, normal);
+  vec2 t = MEET(body, rotate(back, origin - body.position.xyz), rotate(back, ray), from, normal);
   normal = rotate(body.rotation, normal);
   return t;
 }

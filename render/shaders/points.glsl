@@ -1,7 +1,7 @@
 // The points style's picture: the sphere at each pixel as a bead of water. Light that comes through from behind is
 // absorbed along the way, the water scatters some sunlight itself, and its surface mirrors sky and sun.
 #include "frame.glsl"
-#define TILES 32.0
+#define TILES 32
 #include "screen.glsl"
 
 #ifdef FRAGMENT_STAGE

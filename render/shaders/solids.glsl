@@ -1,4 +1,4 @@
-// Rays against solids in their own axes: SHAPE is a number of SimShape. Each meet() gives entry and exit of the ray
+// Rays against solids in their own axes, a function for each SimShape but meshes. Each gives entry and exit of the ray
 // o + t·d, entry > exit when it misses, and the outward normal at the entry. An entry before `from` means that the ray
 // begins inside.
 const vec2 MISSED = vec2(FAR, -FAR);
@@ -27,27 +27,26 @@ vec2 box(vec3 size, vec3 o, vec3 d, out vec3 normal) {
   return vec2(enter, min(x.y, min(y.y, z.y)));
 }
 
-#if SHAPE == 0
-vec2 meet(Body body, vec3 o, vec3 d, float from, out vec3 normal) {
+vec2 meet_box(Body body, vec3 o, vec3 d, float from, out vec3 normal) {
   return box(body.half_size.xyz, o, d, normal);
 }
-#elif SHAPE == 1
-vec2 meet(Body body, vec3 o, vec3 d, float from, out vec3 normal) {
+
+vec2 meet_sphere(Body body, vec3 o, vec3 d, float from, out vec3 normal) {
   vec2 t = ball(o, d, body.half_size.x);
   normal = (o + d * t.x) / body.half_size.x;
   return t;
 }
-#elif SHAPE == 2
-vec2 meet(Body body, vec3 o, vec3 d, float from, out vec3 normal) {
+
+vec2 meet_cylinder(Body body, vec3 o, vec3 d, float from, out vec3 normal) {
   vec2 y = slab(o.y, d.y, body.half_size.y);
   vec2 t = ball(vec3(o.x, 0.0, o.z), vec3(d.x, 0.0, d.z), body.half_size.x);
   vec3 p = o + d * t.x;
   normal = y.x > t.x ? vec3(0.0, -sign(d.y), 0.0) : vec3(p.x, 0.0, p.z) / body.half_size.x;
   return vec2(max(t.x, y.x), min(t.y, y.y));
 }
-#elif SHAPE == 3
+
 // Two balls and the cylinder between them: what they make is convex, so the first entry is the whole's.
-vec2 meet(Body body, vec3 o, vec3 d, float from, out vec3 normal) {
+vec2 meet_capsule(Body body, vec3 o, vec3 d, float from, out vec3 normal) {
   float r = body.half_size.x, h = body.half_size.w;
   vec2 side = ball(vec3(o.x, 0.0, o.z), vec3(d.x, 0.0, d.z), r), y = slab(o.y, d.y, h);
   vec2 t = vec2(max(side.x, y.x), min(side.y, y.y));
@@ -58,12 +57,12 @@ vec2 meet(Body body, vec3 o, vec3 d, float from, out vec3 normal) {
   normal = (p - vec3(0.0, clamp(p.y, -h, h), 0.0)) / r;
   return t;
 }
-#elif SHAPE == 4
+
 // In units of one step, u along the flight and v upwards, the solid is v <= floor(u) + 1. Nothing of it lies above the
 // line v = u + 1 through the noses, everything below v = u is inside, and between the two a ray that meets the flight
 // does so before it has left the step over which it crossed the upper line. So one step is looked at, however many there
 // are, with its neighbours, because a nose itself may be rounded to either side.
-vec2 meet(Body body, vec3 o, vec3 d, float from, out vec3 normal) {
+vec2 meet_stairs(Body body, vec3 o, vec3 d, float from, out vec3 normal) {
   vec3 size = body.half_size.xyz;
   float steps = body.half_size.w;
   vec2 around = box(size, o, d, normal);
@@ -91,4 +90,3 @@ vec2 meet(Body body, vec3 o, vec3 d, float from, out vec3 normal) {
   }
   return vec2(start + best, around.y);
 }
-#endif

@@ -7,13 +7,13 @@ layout(std430, binding = 0) readonly buffer Spheres { vec4 spheres[]; };
 layout(std430, binding = 1) writeonly buffer Tiles { uint tiles[]; }; // every writer of a tile writes 1
 layout(std140, binding = 1) uniform Params {
   vec4 params;          // radius factor, number of spheres, width of the dispatch, tiles in a row
-  vec4 size;            // of a tile in pixels
+  vec4 size;            // of a tile in pixels; vec4s from one sphere to the next
 };
 
 void main() {
   uint index = gl_GlobalInvocationID.y * uint(params.z) + gl_GlobalInvocationID.x;
   if (index >= uint(params.y)) return;
-  vec4 s = spheres[index];
+  vec4 s = spheres[index * uint(size.y)];
   vec3 c = to_view(s.xyz);
   float r = s.w * params.x;
   if (hidden(c, r)) return;

@@ -28,6 +28,11 @@ endif()
 add_test(NAME app_simulate_long COMMAND app_simulate_cli long WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
 set_tests_properties(app_simulate_long PROPERTIES LABELS long TIMEOUT 1800)
 
+# Water at rest looks at rest.
+lido_add_test(app_flicker SOURCES test_flicker.c LIBRARIES lido_test_runner)
+add_test(NAME app_flicker_long COMMAND app_flicker long WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+set_tests_properties(app_flicker_long PROPERTIES LABELS long TIMEOUT 1800)
+
 # meshio is a package of the distribution's own Python.
 find_program(LIDO_SYSTEM_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH)
 if(NOT LIDO_SYSTEM_PYTHON)

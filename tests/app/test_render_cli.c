@@ -223,9 +223,9 @@ static void test_layers(void **state) {
   assert_true(plausible > 100); // metres to the floor or the water
   image_free(&image);
   LIDO(&run, "render", scene, "--frames", "1", SIZE, "-q", "--layer", "smell", "-o", in(folder, "out/x.png"));
-  check_said(&run, 2, "--layer smell: style 'points' has no such layer; it has: ");
+  check_said(&run, 2, "--layer smell: style 'refraction' has no such layer; it has: ");
   assert_int_equal(folder_count(in(folder, "out")), 0);
-  LIDO(&run, "render", scene, "--frames", "1", "--style", "refraction", "-o", in(folder, "out/x.png"));
+  LIDO(&run, "render", scene, "--frames", "1", "--style", "cartoon", "-o", in(folder, "out/x.png"));
   check_said(&run, 2, "style");
 }
 
@@ -409,6 +409,29 @@ static void test_stats(void **state) {
   free(text);
 }
 
+// Shares of the orders in which rays went through two kinds of water.
+static void test_figures(void **state) {
+  (void)state;
+  LidoRun run = {0};
+  LIDO(&run, "render", scene, "--frames", "2", SIZE, "-q", "--style", "refraction", "-o", in(folder, "out/f_%05d.png"),
+       "--stats", in(folder, "s.jsonl"));
+  check_done(&run);
+  size_t size;
+  char *text = (char *)file_get(in(folder, "s.jsonl"), &size);
+  int lines = 0;
+  for (char *line = strtok(text, "\n"); line; line = strtok(NULL, "\n"), lines++) {
+    cJSON *object = cJSON_Parse(line), *figures = cJSON_GetObjectItem(object, "figures"), *figure;
+    assert_int_equal(cJSON_GetArraySize(figures), 6);
+    assert_true(cJSON_GetObjectItem(figures, "aggregated")->valuedouble > 0.3);
+    double sum = 0;
+    cJSON_ArrayForEach(figure, figures) sum += figure->valuedouble;
+    assert_true(fabs(sum - 1) < 1e-3);
+    cJSON_Delete(object);
+  }
+  assert_int_equal(lines, 2);
+  free(text);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test_setup_teardown(test_pictures, set_up, tear_down),
@@ -427,6 +450,7 @@ int main(void) {
       cmocka_unit_test_setup_teardown(test_reader_goes_away, set_up, tear_down),
       cmocka_unit_test_setup_teardown(test_interrupt, set_up, tear_down),
       cmocka_unit_test_setup_teardown(test_stats, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(test_figures, set_up, tear_down),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -288,7 +288,7 @@ static void test_defaults_are_those_of_the_libraries(void **state) {
   assert_true(is.seed == should.seed && is.jitter == should.jitter && is.threads == should.threads);
 
   RenderSettings look = scene_render_settings(&scene), best = render_default_settings();
-  assert_string_equal(look.style, best.style);
+  assert_string_equal(look.style, "refraction"); // the library's own default is the style that needs nothing of a frame
   assert_memory_equal(look.sun_direction, best.sun_direction, sizeof look.sun_direction);
   assert_memory_equal(look.sun_colour, best.sun_colour, sizeof look.sun_colour);
   assert_true(look.sun == best.sun && look.shadow == best.shadow && look.sky == best.sky && look.floor == best.floor);
@@ -300,6 +300,11 @@ static void test_defaults_are_those_of_the_libraries(void **state) {
   assert_memory_equal(look.absorption, best.absorption, sizeof look.absorption);
   assert_true(look.refractive_index == best.refractive_index && look.exposure == best.exposure);
   assert_true(look.tone_map == best.tone_map && look.points.scale == best.points.scale);
+  const RenderRefraction *a = &look.refraction, *b = &best.refraction;
+  assert_true(a->count == b->count && a->scale == b->scale && a->lift == b->lift && a->smoothing == b->smoothing);
+  assert_true(a->sigma == b->sigma && a->window == b->window && a->reach == b->reach);
+  assert_true(a->iterations == b->iterations && a->view_dependent == b->view_dependent);
+  assert_true(a->splashes_apart == b->splashes_apart && a->surface_only == b->surface_only);
   scene_free(&scene);
 }
 
@@ -496,7 +501,7 @@ static void test_keys_are_known_and_stand_once(void **state) {
 static void test_what_comes_later_is_refused_by_name(void **state) {
   (void)state;
   refused("{\"version\": 1, \"render\": {\"style\": \"raycast\"}}",
-          "t.json:1: render.style: \"raycast\" is not available in this version; available: points");
+          "t.json:1: render.style: \"raycast\" is not available in this version; available: points, refraction");
 }
 
 #define OBSTACLE(text) "{\"version\": 1, \"obstacles\": [{\"type\": " text ", \"position\": [1, 1, 0.5]}]}"

@@ -1,0 +1,22 @@
+// Where in space there is water at all: a coarse grid of bits. Maps of depth know where a body of water begins and ends for
+// the eye, not whether it is hollow; this does.
+#ifndef LIDO_RENDER_OCCUPANCY_H
+#define LIDO_RENDER_OCCUPANCY_H
+
+#include "render/picture.h"
+
+typedef struct RenderOccupancy {
+  GpuBuffer bits;     // uint32: bit c % 32 of word c / 32 is 1 where cell c = (z·size[1] + y)·size[0] + x holds water
+  float origin[3];    // m, of cell (0, 0, 0)
+  float cell;         // m
+  int32_t size[3];    // cells; 0 when there are no particles
+  uint32_t *staging;  // (capacity)
+  size_t capacity;    // words
+} RenderOccupancy;
+
+/// From all particles of the frame; what is not finite is left out. A point of the water that lies no farther from a
+/// particle than 1.6 radii along each axis is in a cell that holds water.
+bool render_occupancy_upload(RenderOccupancy *occupancy, const SimFrame *frame, RenderError *error);
+void render_occupancy_destroy(RenderOccupancy *occupancy);
+
+#endif

@@ -1,0 +1,38 @@
+// The water's surface particles as quadrics: ellipsoids where they are aggregated, balls where they are splashes (Imai,
+// Kanamori, Mitani, 2016, section 4.2), and the passes that cast rays at them.
+#ifndef LIDO_RENDER_QUADRICS_H
+#define LIDO_RENDER_QUADRICS_H
+
+#include "render/picture.h"
+
+/// On the GPU: only what is sensible, and of that only what can be seen from outside the water.
+typedef struct RenderQuadrics {
+  GpuBuffer ellipsoids; // (ellipsoid_count) struct Ellipsoid of quadric.glsl
+  GpuBuffer balls;      // (ball_count) struct Ball of quadric.glsl
+  int32_t ellipsoid_count, ball_count;
+  void *ellipsoid_staging, *ball_staging;
+  int32_t ellipsoid_capacity, ball_capacity;
+} RenderQuadrics;
+
+/// Needs: class, ellipsoids, near-surface flags.
+bool render_quadrics_upload(RenderQuadrics *quadrics, const SimFrame *frame, const RenderRefraction *settings,
+                            RenderError *error);
+void render_quadrics_destroy(RenderQuadrics *quadrics);
+
+typedef enum RenderQuadricKind { RENDER_ELLIPSOIDS = 0, RENDER_BALLS = 1 } RenderQuadricKind;
+
+/// Which surface a pass draws. Programs belong to the caller, one for each kind and surface.
+typedef enum RenderQuadricSurface {
+  RENDER_FRONT = 0, ///< outward normal in world axes and depth along the view axis (m) of the nearest front; all 0: none
+  RENDER_BACK,      ///< the same of the farthest back
+  RENDER_DEPTHS,    ///< 1 / depth of the nearest front (1/m), depth of the farthest back (m); both 0: none
+  RENDER_COLOUR     ///< linear colour of the nearest front's particle and 1; all 0: none
+} RenderQuadricSurface;
+
+/// To be done before a surface is drawn.
+void render_quadrics_clear(RenderQuadricSurface surface, const GpuTarget *out);
+
+bool render_quadrics_draw(RenderPicture *picture, const RenderQuadrics *quadrics, RenderQuadricKind kind,
+                          RenderQuadricSurface surface, GpuProgram *program, const GpuTarget *out, RenderError *error);
+
+#endif

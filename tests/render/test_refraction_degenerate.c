@@ -1,0 +1,291 @@
+// The style "refraction" on frames that nobody checked: it draws, no layer holds what is not a number, GL says nothing.
+#include "tests/render/harness.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define MOST 4000
+#define RADIUS 0.02f
+
+static const RenderView view_of_tank = {{0.5f, 0.6f, 2}, {0.5f, 0.3f, 0.25f}, 38};
+
+// ---- Frames by hand --------------------------------------------------------------------------------------------------
+
+typedef struct Hand {
+  SimFrame frame;
+  float position[3 * MOST], smoothed[3 * MOST], ellipsoid[6 * MOST], radius[MOST];
+  uint8_t particle_class[MOST], near_surface[MOST];
+} Hand;
+
+static Hand *hand_create(void) {
+  Hand *h = calloc(1, sizeof *h);
+  assert_non_null(h);
+  h->frame = (SimFrame){.particle_radius = RADIUS,
+                        .position = h->position,
+                        .smoothed = h->smoothed,
+                        .ellipsoid = h->ellipsoid,
+                        .particle_class = h->particle_class,
+                        .near_surface = h->near_surface,
+                        .bounds_max = {1, 1, 0.5f},
+                        .container = {{0, 0, 0}, {1, 1, 0.5f}, SIM_CONTAINER_BOX},
+                        .has_container = true};
+  return h;
+}
+
+// A ball at rest, of either class, that can be seen.
+static int32_t add(Hand *h, float x, float y, float z, SimClass class) {
+  const int32_t i = h->frame.count++;
+  const float p[3] = {x, y, z};
+  assert_true(i < MOST);
+  memcpy(h->position + 3 * i, p, sizeof p);
+  memcpy(h->smoothed + 3 * i, p, sizeof p);
+  for (int k = 0; k < 3; ++k) h->ellipsoid[6 * i + k] = RADIUS;
+  h->particle_class[i] = (uint8_t) class;
+  h->near_surface[i] = 1;
+  h->radius[i] = RADIUS;
+  return i;
+}
+
+// A block of aggregated water with drops over it.
+static void add_pool(Hand *h) {
+  for (float z = RADIUS; z < 0.5f; z += 2 * RADIUS)
+    for (float x = RADIUS; x < 1; x += 2 * RADIUS)
+      for (float y = RADIUS; y < 0.3f; y += 2 * RADIUS) add(h, x, y, z, SIM_AGGREGATED);
+  for (int i = 0; i < 9; ++i) add(h, 0.1f * (float)(i + 1), 0.5f, 0.25f, SIM_SPLASH);
+}
+
+// ---- What must hold --------------------------------------------------------------------------------------------------
+
+static RenderSettings settings_of(RenderSmoothing smoothing) {
+  RenderSettings settings = render_default_settings();
+  settings.style = "refraction";
+  settings.refraction.smoothing = smoothing;
+  return settings;
+}
+
+static void expect_finite_layer(Harness *harness, const char *what, const char *name, const SimFrame *frame,
+                                const RenderView *view, const RenderSettings *settings) {
+  assert_true(render_show_layer(harness->render, name));
+  free(harness_draw(harness, frame, view, settings));
+  int32_t channels;
+  assert_true(render_read_layer(harness->render, NULL, &channels));
+  const size_t count = (size_t)channels * (size_t)harness->width * (size_t)harness->height;
+  float *values = malloc(count * sizeof *values);
+  assert_true(render_read_layer(harness->render, values, &channels));
+  for (size_t k = 0; k < count; ++k) {
+    if (!isfinite(values[k])) fail_msg("%s: layer %s holds %g", what, name, (double)values[k]);
+  }
+  free(values);
+  assert_true(render_show_layer(harness->render, NULL));
+}
+
+// Nothing in the default scene is black, and so no pixel may be: one of NaN comes out black.
+static void expect_clean(Harness *harness, const char *what, const SimFrame *frame, const RenderView *view,
+                         const RenderSettings *settings) {
+  uint8_t *rgb = harness_draw(harness, frame, view, settings);
+  for (int i = 0; i < harness->width * harness->height; ++i) {
+    const uint8_t *p = rgb + 3 * i;
+    if (p[0] < 4 && p[1] < 4 && p[2] < 4) {
+      fail_msg("%s: pixel %d, %d is black", what, i % harness->width, i / harness->width);
+    }
+  }
+  free(rgb);
+  assert_int_equal(render_gl_error_count(harness->render), 0);
+  // Only these depend on the filter, besides what is made of them.
+  static const char *const maps[] = {"front_depth", "front_normal", "back_depth", "back_normal"};
+  const bool every = settings->refraction.smoothing == RENDER_SMOOTHING_REGRESSION;
+  const int32_t count = every ? render_layer_count(settings->style) : 4;
+  for (int32_t i = 0; i < count; ++i) {
+    const char *name = every ? render_layer_name(settings->style, i) : maps[i];
+    expect_finite_layer(harness, what, name, frame, view, settings);
+  }
+}
+
+// With the default filter and with each other one.
+static void expect_clean_always(Harness *harness, const char *what, const SimFrame *frame, const RenderView *view) {
+  for (int smoothing = 0; smoothing <= RENDER_SMOOTHING_NONE; ++smoothing) {
+    const RenderSettings settings = settings_of((RenderSmoothing)smoothing);
+    expect_clean(harness, what, frame, view, &settings);
+  }
+}
+
+// Without shadows, which all particles throw that have a place.
+static bool same_picture(Harness *harness, const SimFrame *a, const SimFrame *b) {
+  RenderSettings settings = settings_of(RENDER_SMOOTHING_REGRESSION);
+  settings.sun = false;
+  settings.shadow = false;
+  uint8_t *of_a = harness_draw(harness, a, &view_of_tank, &settings);
+  uint8_t *of_b = harness_draw(harness, b, &view_of_tank, &settings);
+  const bool same = memcmp(of_a, of_b, 3 * (size_t)harness->width * (size_t)harness->height) == 0;
+  free(of_a);
+  free(of_b);
+  return same;
+}
+
+// ---- Particles -------------------------------------------------------------------------------------------------------
+
+static void test_few_particles(void **state) {
+  Harness *harness = *state;
+  Hand *h = hand_create();
+  expect_clean_always(harness, "none", &h->frame, &view_of_tank);
+  add(h, 0.5f, 0.3f, 0.25f, SIM_AGGREGATED);
+  expect_clean_always(harness, "one aggregated", &h->frame, &view_of_tank);
+  h->particle_class[0] = SIM_SPLASH;
+  expect_clean_always(harness, "one splash", &h->frame, &view_of_tank);
+  for (int i = 0; i < 300; ++i) add(h, 0.5f, 0.3f, 0.25f, i % 2 ? SIM_SPLASH : SIM_AGGREGATED);
+  expect_clean_always(harness, "all in one place", &h->frame, &view_of_tank);
+  free(h);
+}
+
+// What makes no sense is left out, and the rest is as it would be without.
+static void test_invalid_particles(void **state) {
+  Harness *harness = *state;
+  Hand *clean = hand_create(), *dirty = hand_create();
+  add_pool(clean);
+  add_pool(dirty);
+  static const float bad[] = {NAN, INFINITY, -INFINITY, FLT_MAX, -FLT_MAX, 2e6f};
+  for (int i = 0; i < 36; ++i) {
+    const SimClass class = i % 2 ? SIM_SPLASH : SIM_AGGREGATED;
+    const int32_t n = add(dirty, 0.5f, 0.6f, 0.25f, class);
+    dirty->position[3 * n + i % 3] = bad[i % 6];
+    dirty->smoothed[3 * n + i % 3] = bad[i % 6];
+  }
+  static const float shapes[] = {NAN, INFINITY, 0, 1e30f, -RADIUS, 1e-30f};
+  for (int i = 0; i < 6; ++i) {
+    const int32_t n = add(dirty, 0.5f, 0.6f, 0.25f, SIM_AGGREGATED);
+    for (int k = 0; k < 6; ++k) dirty->ellipsoid[6 * n + k] = shapes[i];
+  }
+  assert_true(same_picture(harness, &clean->frame, &dirty->frame));
+  expect_clean_always(harness, "invalid", &dirty->frame, &view_of_tank);
+  free(clean);
+  free(dirty);
+}
+
+static void test_odd_shapes(void **state) {
+  Harness *harness = *state;
+  Hand *h = hand_create();
+  static const float shapes[][6] = {{RADIUS, 1e-5f, RADIUS, 0, 0, 0}, // a flat disc
+                                    {1e-5f, RADIUS, 1e-5f, 0, 0, 0},  // a needle
+                                    {50, 50, 50, 0, 0, 0},            // larger than everything, with the eye in it
+                                    {1e-6f, 1e-6f, 1e-6f, 0, 0, 0},   // smaller than a pixel
+                                    {RADIUS, RADIUS, RADIUS, RADIUS, 0, 0}};
+  for (size_t i = 0; i < sizeof shapes / sizeof *shapes; ++i) {
+    const int32_t n = add(h, 0.2f * (float)i + 0.1f, 0.3f, 0.25f, SIM_AGGREGATED);
+    memcpy(h->ellipsoid + 6 * n, shapes[i], sizeof shapes[i]);
+    h->position[3 * n + 1] += 0.5f * RADIUS; // lifted
+  }
+  expect_clean_always(harness, "odd shapes", &h->frame, &view_of_tank);
+  free(h);
+}
+
+static void test_odd_radii(void **state) {
+  Harness *harness = *state;
+  Hand *h = hand_create();
+  add_pool(h);
+  static const float radii[] = {0, NAN, INFINITY, -1, FLT_MAX, FLT_MIN, 30, 1e-6f, RADIUS};
+  for (int32_t i = 0; i < h->frame.count; ++i) h->radius[i] = radii[i % 9];
+  h->frame.radius = h->radius;
+  expect_clean_always(harness, "radii", &h->frame, &view_of_tank);
+  h->frame.radius = NULL;
+  static const float own[] = {NAN, 0, -1, INFINITY, 1e-9f, 1e6f};
+  for (size_t k = 0; k < sizeof own / sizeof *own; ++k) {
+    h->frame.particle_radius = own[k];
+    expect_clean_always(harness, "a frame's radius", &h->frame, &view_of_tank);
+  }
+  free(h);
+}
+
+// ---- Eyes ------------------------------------------------------------------------------------------------------------
+
+static void test_eyes(void **state) {
+  Harness *harness = *state;
+  Hand *h = hand_create();
+  add_pool(h);
+  const RenderView views[] = {
+      {{0.5f, 0.15f, 0.25f}, {0.9f, 0.2f, 0.25f}, 70},     // in the water
+      {{0.5f, 0.15f, 0.25f}, {0.5f, 2, 0.25f}, 70},        // looking up from there
+      {{RADIUS, RADIUS, RADIUS}, {0.9f, 0.2f, 0.25f}, 60}, // in a particle at the corner
+      {{0.5f, 0.29f, 0.25f}, {0.9f, 0.29f, 0.3f}, 60},     // on the surface
+      {{0.1f, 0.5f, 0.25f}, {0.5f, 0.3f, 0.25f}, 60},      // in a splash
+      {{0.5f, 0.5f, -2}, {0.5f, 0.5f, -9}, 38},            // the water behind the eye
+      {{0.5f, 4, 0.25f}, {0.5f, 0, 0.25f}, 38},            // straight down
+      {{0.5f, -2, 0.25f}, {0.5f, 0, 0.25f}, 38},           // from under the floor
+      {{900, 900, 900}, {0.5f, 0, 0.25f}, 38},             // far away
+      {{0.5f, 0, 2}, {0.5f, 0, 0.25f}, 160},               // in the floor's plane
+  };
+  for (size_t k = 0; k < sizeof views / sizeof *views; ++k) {
+    char what[32];
+    snprintf(what, sizeof what, "view %zu", k);
+    const RenderSettings settings = settings_of(RENDER_SMOOTHING_REGRESSION);
+    expect_clean(harness, what, &h->frame, &views[k], &settings);
+  }
+  expect_clean_always(harness, "eye in the water", &h->frame, &views[0]);
+  h->frame.has_container = false;
+  expect_clean_always(harness, "eye in open water", &h->frame, &views[0]);
+  free(h);
+}
+
+// ---- Containers ------------------------------------------------------------------------------------------------------
+
+static void test_odd_containers(void **state) {
+  Harness *harness = *state;
+  Hand *h = hand_create();
+  add_pool(h);
+  const SimContainer containers[] = {{{NAN, 0, 0}, {1, 1, 1}},        {{0, 0, 0}, {INFINITY, 1, 1}},
+                                     {{0, 0, 0}, {0, 0, 0}},          {{1, 1, 1}, {0, 0, 0}},
+                                     {{-1e30f, 0, 0}, {1e30f, 1, 1}}, {{0, 0, 0}, {1e-30f, 1e-30f, 1e-30f}},
+                                     {{5, 5, 5}, {6, 6, 6}},          {{-50, -50, -50}, {50, 50, 50}}};
+  const RenderSettings settings = settings_of(RENDER_SMOOTHING_REGRESSION);
+  for (size_t k = 0; k < sizeof containers / sizeof *containers; ++k) {
+    for (int shape = 0; shape < 3; ++shape) { // the last is none
+      char what[48];
+      snprintf(what, sizeof what, "container %zu of shape %d", k, shape);
+      h->frame.container = containers[k];
+      h->frame.container.shape = (SimContainerShape)(shape == 2 ? 9 : shape);
+      expect_clean(harness, what, &h->frame, &view_of_tank, &settings);
+    }
+  }
+  free(h);
+}
+
+// ---- Pictures --------------------------------------------------------------------------------------------------------
+
+static void test_odd_pictures(void **state) {
+  (void)state;
+  static const int32_t sizes[][2] = {{1, 1}, {1, 40}, {40, 1}, {3, 2}, {33, 31}, {65, 97}};
+  Hand *h = hand_create();
+  add_pool(h);
+  for (size_t k = 0; k < sizeof sizes / sizeof *sizes; ++k) {
+    Harness harness = harness_open(CONTEXT_AUTO, sizes[k][0], sizes[k][1]);
+    const RenderSettings settings = settings_of(RENDER_SMOOTHING_REGRESSION);
+    expect_clean(&harness, "odd picture", &h->frame, &view_of_tank, &settings);
+    harness_close(&harness);
+  }
+  free(h);
+}
+
+static int open_harness(void **state) {
+  Harness *harness = malloc(sizeof *harness);
+  *harness = harness_open(CONTEXT_AUTO, 70, 45);
+  *state = harness;
+  return 0;
+}
+
+static int close_harness(void **state) {
+  harness_close(*state);
+  free(*state);
+  return 0;
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_few_particles), cmocka_unit_test(test_invalid_particles),
+      cmocka_unit_test(test_odd_shapes),    cmocka_unit_test(test_odd_radii),
+      cmocka_unit_test(test_eyes),          cmocka_unit_test(test_odd_containers),
+      cmocka_unit_test(test_odd_pictures),
+  };
+  return cmocka_run_group_tests(tests, open_harness, close_harness);
+}
