@@ -108,8 +108,8 @@ static void refraction_destroy(void *state) {
 
 // ---- Passes ----------------------------------------------------------------------------------------------------------
 
-// Is the eye in aggregated water? There the kernel (1 − q²)³ with a support of two spacings sums up to 6.3 in a lattice
-// (16π/315·8 over spacing³, sampled) and to about half of that on its surface.
+// Is the eye in aggregated water? In a lattice of spacing 2 r the kernel (1 − q²)³ with a support of 4 r sums up to its
+// integral, 64π/315 · (4 r)³, in cubes of (2 r)³; at a flat surface to half of that.
 static bool eye_in_water(const SimFrame *frame, const float eye[3]) {
   const float support = 4 * frame->particle_radius, most = support * support;
   float sum = 0;
@@ -120,8 +120,8 @@ static bool eye_in_water(const SimFrame *frame, const float eye[3]) {
     const float a = 1 - d2 / most;
     sum += a * a * a;
   }
-  const float lattice = 4.08f; // ∫ (1 − q²)³ dV = 64π/315 · (4 r)³, in cubes of (2 r)³
-  return sum > 0.6f * lattice;
+  const float lattice = 5.106f;
+  return sum > 0.48f * lattice;
 }
 
 // The particles on the GPU, and the tiles of the picture that they may touch.
