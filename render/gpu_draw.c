@@ -80,8 +80,11 @@ void gpu_draw(Gpu *gpu, const GpuDraw *draw) {
 
 void gpu_dispatch(Gpu *gpu, const GpuDispatch *dispatch) {
   assert(dispatch->program->id != 0);
-  static const GLenum image_formats[GPU_FORMAT_COUNT] = {
-      [GPU_RGBA8] = GL_RGBA8, [GPU_RGBA16F] = GL_RGBA16F, [GPU_RGBA32F] = GL_RGBA32F, [GPU_RG32F] = GL_RG32F, [GPU_R32F] = GL_R32F};
+  static const GLenum image_formats[GPU_FORMAT_COUNT] = {[GPU_RGBA8] = GL_RGBA8,
+                                                         [GPU_RGBA16F] = GL_RGBA16F,
+                                                         [GPU_RGBA32F] = GL_RGBA32F,
+                                                         [GPU_RG32F] = GL_RG32F,
+                                                         [GPU_R32F] = GL_R32F};
   set_inputs(gpu, &dispatch->in);
   glUseProgram(dispatch->program->id);
   for (GLuint i = 0; i < GPU_MAX_COLOURS && dispatch->output[i] != NULL; ++i) {

@@ -85,6 +85,11 @@ bool render_occupancy_upload(RenderOccupancy *o, const SimFrame *frame, RenderEr
   return gpu_buffer_write(&o->bits, "occupancy", o->staging, words * sizeof *o->staging, error);
 }
 
+RenderOccupancyBlock render_occupancy_block(const RenderOccupancy *o) {
+  return (RenderOccupancyBlock){{o->origin[0], o->origin[1], o->origin[2], o->cell},
+                                {o->size[0], o->size[1], o->size[2], 0}};
+}
+
 void render_occupancy_destroy(RenderOccupancy *o) {
   gpu_buffer_destroy(&o->bits);
   free(o->staging);

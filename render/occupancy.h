@@ -6,17 +6,23 @@
 #include "render/picture.h"
 
 typedef struct RenderOccupancy {
-  GpuBuffer bits;     // uint32: bit c % 32 of word c / 32 is 1 where cell c = (z·size[1] + y)·size[0] + x holds water
-  float origin[3];    // m, of cell (0, 0, 0)
-  float cell;         // m
-  int32_t size[3];    // cells; 0 when there are no particles
-  uint32_t *staging;  // (capacity)
-  size_t capacity;    // words
+  GpuBuffer bits;    // uint32: bit c % 32 of word c / 32 is 1 where cell c = (z·size[1] + y)·size[0] + x holds water
+  float origin[3];   // m, of cell (0, 0, 0)
+  float cell;        // m
+  int32_t size[3];   // cells; 0 when there are no particles
+  uint32_t *staging; // (capacity)
+  size_t capacity;   // words
 } RenderOccupancy;
 
 /// From all particles of the frame; what is not finite is left out. A point of the water that lies no farther from a
 /// particle than 1.6 radii along each axis is in a cell that holds water.
 bool render_occupancy_upload(RenderOccupancy *occupancy, const SimFrame *frame, RenderError *error);
+/// What occupancy.glsl has of it in a std140 block.
+typedef struct RenderOccupancyBlock {
+  float grid[4];    // origin, edge of a cell; m
+  int32_t cells[4]; // along each axis; –
+} RenderOccupancyBlock;
+RenderOccupancyBlock render_occupancy_block(const RenderOccupancy *occupancy);
 void render_occupancy_destroy(RenderOccupancy *occupancy);
 
 #endif

@@ -207,6 +207,24 @@ bool render_quadrics_upload(RenderQuadrics *quadrics, const SimFrame *frame, con
                           sizeof(Ball) * (size_t)quadrics->ball_count, error);
 }
 
+float render_quadrics_nearest(const RenderQuadrics *quadrics, const RenderPicture *picture) {
+  const float *m = picture->block.world_to_view, *eye = picture->block.eye, *lens = picture->block.lens;
+  const Ellipsoid *ellipsoids = quadrics->ellipsoid_staging;
+  float nearest = RENDER_FARTHEST;
+  for (int32_t i = 0; i < quadrics->ellipsoid_count; ++i) {
+    const Ellipsoid *e = &ellipsoids[i];
+    const float p[3] = {e->centre[0] - eye[0], e->centre[1] - eye[1], e->centre[2] - eye[2]};
+    float v[3];
+    for (int k = 0; k < 3; ++k) v[k] = m[k] * p[0] + m[4 + k] * p[1] + m[8 + k] * p[2];
+    const float depth = -v[2], reach = e->reach;
+    if (depth > reach && depth < nearest && fabsf(v[0]) < depth * lens[0] + reach &&
+        fabsf(v[1]) < depth * lens[1] + reach) {
+      nearest = depth;
+    }
+  }
+  return nearest;
+}
+
 void render_quadrics_destroy(RenderQuadrics *quadrics) {
   gpu_buffer_destroy(&quadrics->ellipsoids);
   gpu_buffer_destroy(&quadrics->balls);
@@ -226,23 +244,26 @@ void render_quadrics_clear(RenderQuadricSurface surface, const GpuTarget *out) {
   if (surface != RENDER_DEPTHS) gpu_clear_depth(out, surface == RENDER_BACK ? GPU_NEAREST : GPU_FARTHEST);
 }
 
-bool render_quadrics_draw(RenderPicture *picture, const RenderQuadrics *quadrics, RenderQuadricKind kind,
-                          RenderQuadricSurface surface, GpuProgram *program, const GpuTarget *out, RenderError *error) {
+bool render_quadrics_draw(RenderPicture *picture, const RenderQuadrics *quadrics, const RenderQuadricPass *pass,
+                          RenderError *error) {
   static const char *const labels[] = {"ellipsoids", "balls"};
   static const GpuDepth depths[] = {GPU_DEPTH_WRITE, GPU_DEPTH_WRITE_FARTHEST, GPU_DEPTH_OFF, GPU_DEPTH_WRITE};
-  char defines[64];
-  snprintf(defines, sizeof defines, "%s%s", kind_defines[kind], surface_defines[surface]);
-  const GpuProgramDesc desc = {.label = labels[kind], .file = "quadric.glsl", .defines = defines};
-  if (!gpu_program_prepare(program, &desc, error)) return false;
-  const int32_t count = kind == RENDER_BALLS ? quadrics->ball_count : quadrics->ellipsoid_count;
+  char defines[96];
+  snprintf(defines, sizeof defines, "%s%s%s", kind_defines[pass->kind], surface_defines[pass->surface],
+           pass->air != NULL ? "#define SUBMERGED 1\n" : "");
+  const GpuProgramDesc desc = {.label = labels[pass->kind], .file = "quadric.glsl", .defines = defines};
+  if (!gpu_program_prepare(pass->program, &desc, error)) return false;
+  const bool balls = pass->kind == RENDER_BALLS;
+  const int32_t count = balls ? quadrics->ball_count : quadrics->ellipsoid_count;
   if (count == 0) return true;
   gpu_draw(picture->gpu, &(GpuDraw){
-                             .program = program,
-                             .target = out,
+                             .program = pass->program,
+                             .target = pass->out,
                              .vertices = 6 * count,
-                             .depth = depths[surface],
-                             .blend = surface == RENDER_DEPTHS ? GPU_BLEND_MAX : GPU_BLEND_OFF,
-                             .in = {.storage = {kind == RENDER_BALLS ? &quadrics->balls : &quadrics->ellipsoids},
+                             .depth = depths[pass->surface],
+                             .blend = pass->surface == RENDER_DEPTHS ? GPU_BLEND_MAX : GPU_BLEND_OFF,
+                             .in = {.storage = {balls ? &quadrics->balls : &quadrics->ellipsoids},
+                                    .textures = {pass->air},
                                     .frame = &picture->uniforms},
                          });
   return true;

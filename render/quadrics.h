@@ -17,6 +17,8 @@ typedef struct RenderQuadrics {
 /// Needs: class, ellipsoids, near-surface flags.
 bool render_quadrics_upload(RenderQuadrics *quadrics, const SimFrame *frame, const RenderRefraction *settings,
                             RenderError *error);
+/// Depth of the ellipsoid nearest to the eye among those that may be in the picture, m; RENDER_FARTHEST: there is none.
+float render_quadrics_nearest(const RenderQuadrics *quadrics, const RenderPicture *picture);
 void render_quadrics_destroy(RenderQuadrics *quadrics);
 
 typedef enum RenderQuadricKind { RENDER_ELLIPSOIDS = 0, RENDER_BALLS = 1 } RenderQuadricKind;
@@ -32,7 +34,15 @@ typedef enum RenderQuadricSurface {
 /// To be done before a surface is drawn.
 void render_quadrics_clear(RenderQuadricSurface surface, const GpuTarget *out);
 
-bool render_quadrics_draw(RenderPicture *picture, const RenderQuadrics *quadrics, RenderQuadricKind kind,
-                          RenderQuadricSurface surface, GpuProgram *program, const GpuTarget *out, RenderError *error);
+typedef struct RenderQuadricPass {
+  RenderQuadricKind kind;
+  RenderQuadricSurface surface;
+  const GpuTexture *air; ///< of an eye in the water: depth at which the air begins, beyond which no back counts; else NULL
+  GpuProgram *program;
+  const GpuTarget *out;
+} RenderQuadricPass;
+
+bool render_quadrics_draw(RenderPicture *picture, const RenderQuadrics *quadrics, const RenderQuadricPass *pass,
+                          RenderError *error);
 
 #endif

@@ -265,8 +265,8 @@ int32_t render_pass_times(Render *render, RenderPassTime *times, int32_t capacit
   const Gpu *gpu = &render->gpu;
   for (int32_t i = 0; i < gpu->pass_count && i < capacity; ++i) {
     const GpuPass *pass = &gpu->passes[i];
-    times[i] = (RenderPassTime){pass->name, gpu_pass_milliseconds(pass), pass->cpu_milliseconds,
-                                pass->processor_milliseconds};
+    times[i] =
+        (RenderPassTime){pass->name, gpu_pass_milliseconds(pass), pass->cpu_milliseconds, pass->processor_milliseconds};
   }
   return gpu->pass_count;
 }

@@ -138,9 +138,11 @@ static bool upload(Refraction *s, RenderPicture *picture, RenderError *error) {
 static bool draw_splashes(Refraction *s, RenderPicture *picture, RenderError *error) {
   for (int side = RENDER_FRONT; side <= RENDER_BACK; ++side) {
     render_quadrics_clear((RenderQuadricSurface)side, &s->ball_target[side]);
-    if (!render_quadrics_draw(picture, &s->quadrics, RENDER_BALLS, (RenderQuadricSurface)side, &s->ball_program[side],
-                              &s->ball_target[side], error))
-      return false;
+    const RenderQuadricPass pass = {.kind = RENDER_BALLS,
+                                    .surface = (RenderQuadricSurface)side,
+                                    .program = &s->ball_program[side],
+                                    .out = &s->ball_target[side]};
+    if (!render_quadrics_draw(picture, &s->quadrics, &pass, error)) return false;
   }
   return true;
 }
@@ -155,10 +157,14 @@ static bool draw_colours(Refraction *s, RenderPicture *picture, RenderError *err
       return false;
   }
   render_quadrics_clear(RENDER_COLOUR, &s->colour_target);
-  return render_quadrics_draw(picture, &s->quadrics, RENDER_ELLIPSOIDS, RENDER_COLOUR, &s->colour_program[0],
-                              &s->colour_target, error) &&
-         render_quadrics_draw(picture, &s->quadrics, RENDER_BALLS, RENDER_COLOUR, &s->colour_program[1],
-                              &s->colour_target, error);
+  for (int kind = RENDER_ELLIPSOIDS; kind <= RENDER_BALLS; ++kind) {
+    const RenderQuadricPass pass = {.kind = (RenderQuadricKind)kind,
+                                    .surface = RENDER_COLOUR,
+                                    .program = &s->colour_program[kind],
+                                    .out = &s->colour_target};
+    if (!render_quadrics_draw(picture, &s->quadrics, &pass, error)) return false;
+  }
+  return true;
 }
 
 // Choices of refract.glsl that are made when it is compiled: a software rasteriser runs both sides of a branch.
@@ -167,23 +173,23 @@ static void light_defines(const Refraction *s, const RenderPicture *picture, cha
   const int32_t *first = o->first, count = picture->settings->refraction.count;
   const bool edges = picture->block.container_min[3] != 0 && picture->frame->container.shape == SIM_CONTAINER_BOX;
   snprintf(defines, size,
-           "%s#define REFRACTIONS %d\n%s%s%s%s%s"
+           "%s#define REFRACTIONS %d\n%s%s%s%s%s%s"
            "#define BOXES %d\n#define BALLS %d\n#define CYLINDERS %d\n#define CAPSULES %d\n#define STAIRS %d\n#define "
            "MESHES %d\n",
            picture->defines, count, picture->frame->colour != NULL ? "#define COLOURED 1\n" : "",
-           s->submerged ? "#define SUBMERGED 1\n" : "", edges ? "#define BOX_EDGES 1\n" : "",
-           s->quadrics.ball_count > 0 ? "#define SPLASHES 1\n" : "", o->count > 0 ? "#define BODIES 1\n" : "",
-           o->count > 0 && first[1] > first[0], o->count > 0 && first[2] > first[1],
-           o->count > 0 && first[3] > first[2], o->count > 0 && first[4] > first[3],
-           o->count > 0 && first[5] > first[4], o->count > 0 && first[6] > first[5]);
+           render_water_surface_clip_define(picture->frame), s->submerged ? "#define SUBMERGED 1\n" : "",
+           edges ? "#define BOX_EDGES 1\n" : "", s->quadrics.ball_count > 0 ? "#define SPLASHES 1\n" : "",
+           o->count > 0 ? "#define BODIES 1\n" : "", o->count > 0 && first[1] > first[0],
+           o->count > 0 && first[2] > first[1], o->count > 0 && first[3] > first[2],
+           o->count > 0 && first[4] > first[3], o->count > 0 && first[5] > first[4],
+           o->count > 0 && first[6] > first[5]);
 }
 
 // std140 block of refract.glsl
 typedef struct LightParams {
   float particle[4];
   int32_t ends[8];
-  float grid[4];
-  int32_t cells[4];
+  RenderOccupancyBlock occupancy;
 } LightParams;
 
 static bool draw_light(Refraction *s, RenderPicture *picture, RenderError *error) {
@@ -193,12 +199,7 @@ static bool draw_light(Refraction *s, RenderPicture *picture, RenderError *error
   if (!gpu_program_prepare(&s->light_program, &desc, error)) return false;
   const RenderTiles *tiles = &picture->tiles;
   const float r = picture->frame->particle_radius, nothing[4] = {0};
-  LightParams params = {{r, 0, picture->block.container_max[3], 1.5f * r}, {0}, {0}, {0}};
-  for (int k = 0; k < 3; ++k) {
-    params.grid[k] = s->occupancy.origin[k];
-    params.cells[k] = s->occupancy.size[k];
-  }
-  params.grid[3] = s->occupancy.cell;
+  LightParams params = {{r, 0, picture->block.container_max[3], 1.5f * r}, {0}, render_occupancy_block(&s->occupancy)};
   for (int shape = 0; shape < SIM_SHAPE_COUNT; ++shape) params.ends[shape] = picture->obstacles.first[shape + 1];
   gpu_clear_colour(&s->light_target, 1, nothing);
   gpu_clear_colour(&s->light_target, 2, nothing);
@@ -242,7 +243,7 @@ static bool refraction_draw(void *state, RenderPicture *picture, RenderError *er
   gpu_pass_end(gpu);
 
   gpu_pass_begin(gpu, "depths");
-  ok = ok && render_water_surface_depths(&s->water, picture, &s->quadrics, s->submerged, error);
+  ok = ok && render_water_surface_depths(&s->water, picture, &s->quadrics, s->submerged ? &s->occupancy : NULL, error);
   gpu_pass_end(gpu);
 
   gpu_pass_begin(gpu, "splashes");

@@ -25,15 +25,17 @@ bool render_water_surface_resize(RenderWaterSurface *surface, int32_t width, int
 }
 
 void render_water_surface_destroy(RenderWaterSurface *surface) {
-  GpuProgram *const programs[] = {
-      &surface->depth_program,        &surface->gather_program,       &surface->clip_program,
-      &surface->smoothing_program[0], &surface->smoothing_program[1], &surface->normal_program[0],
-      &surface->normal_program[1],    &surface->quadric_program[0],   &surface->quadric_program[1]};
-  GpuTexture *const textures[] = {&surface->raw,           &surface->inverse[0], &surface->inverse[1],
-                                  &surface->front,         &surface->back,       &surface->raw_normal[0],
-                                  &surface->raw_normal[1], &surface->raw_depth};
+  GpuProgram *const programs[] = {&surface->air_program,          &surface->depth_program,
+                                  &surface->gather_program,       &surface->clip_program,
+                                  &surface->smoothing_program[0], &surface->smoothing_program[1],
+                                  &surface->normal_program[0],    &surface->normal_program[1],
+                                  &surface->quadric_program[0],   &surface->quadric_program[1]};
+  GpuTexture *const textures[] = {&surface->air,           &surface->raw,           &surface->inverse[0],
+                                  &surface->inverse[1],    &surface->front,         &surface->back,
+                                  &surface->raw_normal[0], &surface->raw_normal[1], &surface->raw_depth};
   for (size_t i = 0; i < sizeof programs / sizeof programs[0]; ++i) gpu_program_destroy(programs[i]);
   for (size_t i = 0; i < sizeof textures / sizeof textures[0]; ++i) gpu_texture_destroy(textures[i]);
+  gpu_target_destroy(&surface->air_target);
   gpu_target_destroy(&surface->raw_target);
   gpu_target_destroy(&surface->inverse_target[0]);
   gpu_target_destroy(&surface->inverse_target[1]);
@@ -50,19 +52,46 @@ static float radius_of(const RenderPicture *picture) {
 
 // ---- Depths ----------------------------------------------------------------------------------------------------------
 
+static bool create_air(RenderWaterSurface *surface, const RenderPicture *picture, RenderError *error) {
+  if (surface->air_target.id != 0) return true;
+  const GpuTextureDesc desc = {"water: air", picture->width, picture->height, GPU_R32F, false};
+  const GpuTargetDesc target = {"water: air", {&surface->air}, NULL};
+  return gpu_texture_create(&surface->air, &desc, error) && gpu_target_create(&surface->air_target, &target, error);
+}
+
+// Output: where the air begins for an eye in the water.
+static bool find_air(RenderWaterSurface *surface, RenderPicture *picture, const RenderOccupancy *around,
+                     RenderError *error) {
+  if (!create_air(surface, picture, error)) return false;
+  const RenderOccupancyBlock block = render_occupancy_block(around);
+  return render_tile_pass(
+      picture,
+      &(RenderTilePass){.program = &surface->air_program,
+                        .desc = {"where the air begins", "water_air.glsl"},
+                        .target = &surface->air_target,
+                        .out = {&surface->air},
+                        .in = {.storage = {[1] = &around->bits}, .params = &block, .params_size = sizeof block}},
+      error);
+}
+
 bool render_water_surface_depths(RenderWaterSurface *surface, RenderPicture *picture, const RenderQuadrics *quadrics,
-                                 bool submerged, RenderError *error) {
+                                 const RenderOccupancy *around, RenderError *error) {
   // Passes leave tiles without water alone.
   const float nothing[4] = {0};
   gpu_clear_colour(&surface->inverse_target[0], 0, nothing);
   gpu_clear_colour(&surface->inverse_target[1], 0, nothing);
   gpu_clear_colour(&surface->surface_target, 0, nothing);
   gpu_clear_colour(&surface->surface_target, 1, nothing);
-  surface->submerged = submerged;
+  surface->submerged = around != NULL;
   surface->smoothed = 0;
   render_quadrics_clear(RENDER_DEPTHS, &surface->raw_target);
-  return render_quadrics_draw(picture, quadrics, RENDER_ELLIPSOIDS, RENDER_DEPTHS, &surface->depth_program,
-                              &surface->raw_target, error) &&
+  if (surface->submerged && !find_air(surface, picture, around, error)) return false;
+  const RenderQuadricPass pass = {.kind = RENDER_ELLIPSOIDS,
+                                  .surface = RENDER_DEPTHS,
+                                  .air = surface->submerged ? &surface->air : NULL,
+                                  .program = &surface->depth_program,
+                                  .out = &surface->raw_target};
+  return render_quadrics_draw(picture, quadrics, &pass, error) &&
          render_tile_pass(picture,
                           &(RenderTilePass){.program = &surface->gather_program,
                                             .desc = {"gather depths", "water_gather.glsl"},
@@ -94,9 +123,12 @@ static bool draw_raw_normals(RenderWaterSurface *surface, RenderPicture *picture
                              RenderError *error) {
   for (int side = RENDER_FRONT; side <= RENDER_BACK; ++side) {
     render_quadrics_clear((RenderQuadricSurface)side, &surface->raw_normal_target[side]);
-    if (!render_quadrics_draw(picture, quadrics, RENDER_ELLIPSOIDS, (RenderQuadricSurface)side,
-                              &surface->quadric_program[side], &surface->raw_normal_target[side], error))
-      return false;
+    const RenderQuadricPass pass = {.kind = RENDER_ELLIPSOIDS,
+                                    .surface = (RenderQuadricSurface)side,
+                                    .air = surface->submerged ? &surface->air : NULL,
+                                    .program = &surface->quadric_program[side],
+                                    .out = &surface->raw_normal_target[side]};
+    if (!render_quadrics_draw(picture, quadrics, &pass, error)) return false;
   }
   return true;
 }
@@ -104,9 +136,12 @@ static bool draw_raw_normals(RenderWaterSurface *surface, RenderPicture *picture
 // Output: front and back, with the particles' own normals if `analytic`.
 static bool write_normals(RenderWaterSurface *surface, RenderPicture *picture, bool analytic, RenderError *error) {
   const float bend[4] = {radius_of(picture)};
+  char defines[64];
+  snprintf(defines, sizeof defines, "%s%s", render_water_surface_clip_define(picture->frame),
+           analytic ? "#define ANALYTIC 1\n" : "");
   RenderTilePass pass = {
       .program = &surface->normal_program[analytic],
-      .desc = {"water normals", "water_normals.glsl", analytic ? "#define ANALYTIC 1\n" : ""},
+      .desc = {"water normals", "water_normals.glsl", defines},
       .target = &surface->surface_target,
       .out = {&surface->front, &surface->back},
       .in = {.textures = {&surface->inverse[surface->smoothed]}, .params = bend, .params_size = sizeof bend}};
@@ -142,16 +177,36 @@ static bool rows_and_columns(RenderWaterSurface *surface, RenderPicture *picture
          filter(surface, picture, 1, file, "#define STEP ivec2(0, 1)\n", params, error);
 }
 
+// Pixels that a radius covers where the water is nearest to the eye.
+static float largest_radius(const RenderPicture *picture, const RenderQuadrics *quadrics) {
+  const float per_metre = (float)picture->height / (2 * picture->block.lens[1]); // at a depth of 1 m
+  return radius_of(picture) / render_quadrics_nearest(quadrics, picture) * per_metre;
+}
+
 // Wide windows first: their taps lie apart, and what aliasing that leaves the narrow ones remove. 62 taps; chosen by
 // tests/render/smoothing_quality.
-static bool smooth_regression(RenderWaterSurface *surface, RenderPicture *picture, RenderError *error) {
+//
+// Near the eye even the last step's taps lie so far apart that one sees it: there are twice as many taps, and finer steps
+// follow until none lie apart.
+static bool smooth_regression(RenderWaterSurface *surface, RenderPicture *picture, const RenderQuadrics *quadrics,
+                              RenderError *error) {
   static const struct {
     float taps, reach; // on either side; half of the window, radii
   } steps[] = {{5, 4.5f}, {5, 2}, {4, 0.8f}};
-  const float r = radius_of(picture), range = 7 * r;
-  for (size_t i = 0; i < sizeof steps / sizeof steps[0]; ++i) {
-    const float params[4] = {steps[i].taps, steps[i].reach * r, range, 0};
-    if (!rows_and_columns(surface, picture, "smooth_regression.glsl", params, error)) return false;
+  enum { STEPS = sizeof steps / sizeof steps[0], MOST_FINE_STEPS = 6 };
+  static const char file[] = "smooth_regression.glsl";
+  const float r = radius_of(picture), range = 7 * r, pixels = largest_radius(picture, quadrics);
+  const float taps = steps[STEPS - 1].taps, apart = 1.5f * (taps + 0.5f); // half of a window whose taps do
+  float reach = steps[STEPS - 1].reach;
+  const bool near = reach * pixels > apart;
+  for (int i = 0; i < STEPS; ++i) {
+    const float params[4] = {near ? 2 * steps[i].taps : steps[i].taps, steps[i].reach * r, range, 0};
+    if (!rows_and_columns(surface, picture, file, params, error)) return false;
+  }
+  for (int i = 0; i < MOST_FINE_STEPS && reach * pixels > apart; ++i) {
+    reach *= 2 / (taps + 0.5f);
+    const float params[4] = {taps, reach * r, range, 1.5f};
+    if (!rows_and_columns(surface, picture, file, params, error)) return false;
   }
   return true;
 }
@@ -179,10 +234,11 @@ static bool smooth_square(RenderWaterSurface *surface, RenderPicture *picture, c
   return true;
 }
 
-static bool smooth(RenderWaterSurface *surface, RenderPicture *picture, RenderError *error) {
+static bool smooth(RenderWaterSurface *surface, RenderPicture *picture, const RenderQuadrics *quadrics,
+                   RenderError *error) {
   switch (picture->settings->refraction.smoothing) {
   case RENDER_SMOOTHING_REGRESSION:
-    return smooth_regression(surface, picture, error);
+    return smooth_regression(surface, picture, quadrics, error);
   case RENDER_SMOOTHING_NARROW_RANGE:
     return smooth_narrow_range(surface, picture, error);
   case RENDER_SMOOTHING_BILATERAL:
@@ -198,8 +254,7 @@ static bool smooth(RenderWaterSurface *surface, RenderPicture *picture, RenderEr
 
 // ---- Walls -----------------------------------------------------------------------------------------------------------
 
-// "": the frame has no container that could hold anything.
-static const char *clip_define(const SimFrame *frame) {
+const char *render_water_surface_clip_define(const SimFrame *frame) {
   const SimContainer *c = &frame->container;
   bool sensible = frame->has_container;
   for (int k = 0; k < 3; ++k) {
@@ -212,7 +267,7 @@ static const char *clip_define(const SimFrame *frame) {
 
 static bool clip(RenderWaterSurface *surface, RenderPicture *picture, RenderError *error) {
   char defines[64];
-  snprintf(defines, sizeof defines, "%s%s", clip_define(picture->frame),
+  snprintf(defines, sizeof defines, "%s%s", render_water_surface_clip_define(picture->frame),
            surface->submerged ? "#define SUBMERGED 1\n" : "");
   if (defines[0] == '\0') return true;
   const int from = surface->smoothed, to = 1 - from;
@@ -235,7 +290,7 @@ bool render_water_surface_smooth(RenderWaterSurface *surface, RenderPicture *pic
   return (!own_normals ||
           (create_raw_normals(surface, picture, error) && draw_raw_normals(surface, picture, quadrics, error))) &&
          (smoothing != RENDER_SMOOTHING_PLANE_FIT || write_normals(surface, picture, true, error)) &&
-         smooth(surface, picture, error) && clip(surface, picture, error);
+         smooth(surface, picture, quadrics, error) && clip(surface, picture, error);
 }
 
 bool render_water_surface_normals(RenderWaterSurface *surface, RenderPicture *picture, RenderError *error) {

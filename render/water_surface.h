@@ -6,20 +6,25 @@
 #ifndef LIDO_RENDER_WATER_SURFACE_H
 #define LIDO_RENDER_WATER_SURFACE_H
 
+#include "render/occupancy.h"
 #include "render/quadrics.h"
 
 typedef struct RenderWaterSurface {
   GpuProgram depth_program, gather_program, clip_program;
-  bool submerged;          // the eye is in the water
-  GpuTexture raw;          // 1 / depth of the nearest front, depth of the farthest back
+  bool submerged; // the eye is in the water
+  // only then, made when first needed
+  GpuProgram air_program;
+  GpuTexture air; // depth (m) at which the air begins; 1e9: nowhere
+  GpuTarget air_target;
+  GpuTexture raw; // 1 / depth of the nearest front, depth of the farthest back
   GpuTarget raw_target;
-  GpuTexture inverse[2];   // 1 / depth of front and back, smoothed by turns from one into the other
+  GpuTexture inverse[2]; // 1 / depth of front and back, smoothed by turns from one into the other
   GpuTarget inverse_target[2];
-  int smoothed;            // which of them the last pass wrote
+  int smoothed; // which of them the last pass wrote
   GpuProgram smoothing_program[2];
   GpuProgram normal_program[2];
   GpuTarget surface_target; // both of
-  GpuTexture front, back;  // outward unit normal in world axes, depth (m); 0 where there is none
+  GpuTexture front, back;   // outward unit normal in world axes, depth (m); 0 where there is none
   // only for plane_fit and none, made when first needed: analytic normals
   GpuProgram quadric_program[2];
   GpuTexture raw_normal[2], raw_depth;
@@ -29,9 +34,13 @@ typedef struct RenderWaterSurface {
 bool render_water_surface_resize(RenderWaterSurface *surface, int32_t width, int32_t height, RenderError *error);
 void render_water_surface_destroy(RenderWaterSurface *surface);
 
-/// Input: the ellipsoids, the tiles that they may touch. Output: raw and inverse[0]. `submerged`: the eye is in the water.
+/// Input: the ellipsoids, the tiles that they may touch. Output: raw and inverse[0]. `around`: the water that the eye is
+/// in, of which the back is then where the first air begins; NULL when the eye is in the air.
 bool render_water_surface_depths(RenderWaterSurface *surface, RenderPicture *picture, const RenderQuadrics *quadrics,
-                                 bool submerged, RenderError *error);
+                                 const RenderOccupancy *around, RenderError *error);
+/// The shape of the container that water is cut off at, as a definition for shaders: CLIP_BOX, CLIP_GLASS or, where the frame
+/// has no container that could hold anything, none.
+const char *render_water_surface_clip_define(const SimFrame *frame);
 /// Input: inverse[0] and, for filters that start from the particles' own normals, the ellipsoids. Output: inverse[smoothed], cut
 /// off at the container's walls; where the eye is in the water its front is at the near distance.
 bool render_water_surface_smooth(RenderWaterSurface *surface, RenderPicture *picture, const RenderQuadrics *quadrics,

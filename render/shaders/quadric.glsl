@@ -3,9 +3,10 @@
 // space a plane n·x = 0 through the eye touches it where (n·c)² = nᵀA n, which bounds it on the screen, and the ray meets
 // it where (x − c)ᵀ A⁻¹ (x − c) = 1.
 //
-// SPHERES: balls. COLOUR: the particle's colour at the front. DEPTHS: front and back at once, to be blended by the maximum: (1 / depth of the front, depth of the
-// back). Otherwise the normal and depth of the front or, with BACK, of the back; of a ball, instead of the
-// normal, the way from its centre to the surface, which tells its radius as well.
+// SPHERES: balls. COLOUR: the particle's colour at the front. DEPTHS: front and back at once, to be blended by the maximum:
+// (1 / depth of the front, depth of the back). Otherwise the normal and depth of the front or, with BACK, of the back; of a
+// ball, instead of the normal, the way from its centre to the surface, which tells its radius as well. SUBMERGED: backs
+// only as far as the first air.
 #include "frame.glsl"
 #include "sphere.glsl"
 
@@ -95,6 +96,10 @@ vec3 weigh(vec3 v) {
 }
 #endif
 
+#ifdef SUBMERGED
+layout(binding = 0) uniform sampler2D air; // depth at which it begins
+#endif
+
 layout(location = 0) out vec4 result;
 #ifdef COLOUR
 flat in vec3 colour;
@@ -109,6 +114,9 @@ void main() {
   if (h <= 0.0) discard;
   h = sqrt(h);
   float front = -centre.z + (-b - h) / a, back = -centre.z + (-b + h) / a;
+#ifdef SUBMERGED
+  if (back > texelFetch(air, ivec2(gl_FragCoord.xy), 0).x) discard;
+#endif
 #ifdef DEPTHS
   if (back < eye.w) discard;
   result = vec4(1.0 / max(front, eye.w), back, 0.0, 0.0);

@@ -16,7 +16,7 @@ layout(std140, binding = 1) uniform Params {
   vec4 grid;            // of occupancy: origin, edge of a cell; m
   ivec4 cells;
 };
-layout(std430, binding = 1) readonly buffer Occupancy { uint occupied[]; }; // a bit for each cell: is there water in it?
+#include "occupancy.glsl"
 #define body_end int[6](ends[0].x, ends[0].y, ends[0].z, ends[0].w, ends[1].x, ends[1].y)
 layout(binding = 8) uniform sampler2D background; // linear light, depth
 #include "scene.glsl"
@@ -65,6 +65,19 @@ float outside(vec3 p, vec2 w) {
   return w.y > 0.0 ? max(-p.z - w.y, w.x + p.z) : FAR;
 }
 
+// The same of an eye in the water, which often looks along the surface: there depths change by more than radii from pixel to
+// pixel, and the distance from the pixel's plane tells what the depth does not. Behind the eye there is more water.
+float outside(vec3 p) {
+#ifdef SUBMERGED
+  if (-p.z < eye.w) return -particle.x;
+  ivec2 pixel = ivec2(pixel_of(p));
+  vec4 s = texelFetch(water_back, pixel, 0);
+  return s.w > 0.0 ? dot(p - ray_through(vec2(pixel) + 0.5) * s.w, turned(s.xyz)) : FAR;
+#else
+  return outside(p, water_at(p));
+#endif
+}
+
 // Centre and radius of the splash that a map shows at a pixel; radius 0 where there is none.
 vec4 ball_at(vec4 surface, ivec2 pixel) {
   vec3 from_centre = turned(surface.xyz);
@@ -110,14 +123,15 @@ Surface crossing(vec3 p, vec3 d, float t) {
   vec4 s = through_back ? texelFetch(water_back, ivec2(pixel), 0) : texelFetch(water_front, ivec2(pixel), 0);
   vec3 smooth_normal = through_back ? textureLod(water_back, pixel / lens.zw, 0.0).xyz
                                     : textureLod(water_front, pixel / lens.zw, 0.0).xyz;
-  float off = abs(s.w + at.z);
-  if (w.y <= 0.0 || off > 2.0 * particle.x) return of_water(t, vec3(0.0));
   // The pixel's plane instead of its depth.
   vec3 corner = ray_through(floor(pixel) + 0.5) * s.w;
   vec3 n = turned(s.xyz);
+  if (w.y <= 0.0 || abs(dot(corner - at, n)) > 2.0 * particle.x) return of_water(t, vec3(0.0));
   float slope = dot(d, n);
   float step_on = dot(corner - at, n) / (abs(slope) > 0.05 ? slope : 0.05);
-  return of_water(max(t + clamp(step_on, -particle.x, particle.x), 0.0), normalize(turned(smooth_normal)));
+  // Not across a crease.
+  vec3 normal = dot(smooth_normal, s.xyz) > 0.98 ? smooth_normal : s.xyz;
+  return of_water(max(t + clamp(step_on, -particle.x, particle.x), 0.0), normalize(turned(normal)));
 }
 
 const int MARCH = 6, SECANTS = 5, LEAVES = REFRACTIONS > 1 ? REFRACTIONS + 1 : 1;
@@ -130,7 +144,7 @@ float narrow(vec3 p, vec3 d, vec2 t, vec2 f) {
   for (int i = 0; i < SECANTS; ++i) {
     float middle = mix(t.x, t.y, clamp(f.x / (f.x - f.y), 0.05, 0.95));
     vec3 at = p + d * middle;
-    float g = outside(at, water_at(at));
+    float g = outside(at);
     bool in_it = g < 0.0;
     t = in_it ? vec2(middle, t.y) : vec2(t.x, middle);
     f = in_it ? vec2(g, 0.5 * f.y) : vec2(0.5 * f.x, g);
@@ -139,26 +153,42 @@ float narrow(vec3 p, vec3 d, vec2 t, vec2 f) {
   return mix(t.x, t.y, f.x / (f.x - f.y));
 }
 
+// Where the ray leaves the scene, or its container, whose top is open; the water ends there at the latest.
+Surface walls(vec3 p, vec3 d) {
+  vec3 origin = eye.xyz + to_world(p), way = to_world(d);
+  way = mix(way, vec3(1e-9), lessThan(abs(way), vec3(1e-9)));
+  vec3 ends = max((container_min.xyz - origin) / way, (container_max.xyz - origin) / way);
+#ifdef CLIP_BOX
+  if (way.y > 0.0) ends.y = FAR;
+#endif
+  float t = max(min(ends.x, min(ends.y, ends.z)), 0.0);
+#ifdef CLIP_BOX
+  vec3 axis = vec3(lessThanEqual(ends, ends.yzx)) * vec3(lessThanEqual(ends, ends.zxy));
+  return of_water(t, mat3(world_to_view) * normalize(axis * sign(way)));
+#else
+  return of_water(t, vec3(0.0));
+#endif
+}
+
 // Out of aggregated water, from a point in it or on its surface.
 Surface leave_water(vec3 p, vec3 d) {
+  Surface wall = walls(p, d);
   vec2 w = water_at(p);
   // Along the ray to the depth of the surface ahead as this pixel has it.
   float guess = d.z < 0.0 ? (w.y + p.z) / -d.z : (-p.z - w.x) / d.z;
   // From the surface itself, where a ray has been mirrored, it tells nothing: then to the walls.
-  if (guess < particle.x) {
-    vec3 origin = eye.xyz + to_world(p), way = to_world(d);
-    way = mix(way, vec3(1e-9), lessThan(abs(way), vec3(1e-9)));
-    vec3 ends = max((container_min.xyz - origin) / way, (container_max.xyz - origin) / way);
-    guess = min(ends.x, min(ends.y, ends.z));
-  }
+  if (guess < particle.x) guess = wall.t;
   guess = clamp(guess, particle.x, container_max.w);
   vec2 t = vec2(0.0, guess), f = vec2(-particle.x, particle.x);
   bool found = false;
   const float AHEAD[MARCH] = float[MARCH](0.3, 0.65, 1.03, 1.6, 2.6, 5.0);
   for (int i = 0; i < MARCH; ++i) {
     float next = guess * AHEAD[i];
+#ifdef CLIP_BOX
+    next = min(next, wall.t);
+#endif
     vec3 at = p + d * next;
-    float g = outside(at, water_at(at));
+    float g = outside(at);
     if (!found && g > 0.0) {
       found = true;
       t.y = next;
@@ -168,8 +198,16 @@ Surface leave_water(vec3 p, vec3 d) {
       f.x = g;
     }
   }
+#ifdef CLIP_BOX
+  if (!found) return wall;
+#else
   if (!found) return of_water(t.x, vec3(0.0));
-  return crossing(p, d, narrow(p, d, t, f));
+#endif
+  Surface found_at = crossing(p, d, narrow(p, d, t, f));
+#ifdef CLIP_BOX
+  if (found_at.t > wall.t - 0.25 * particle.x) return wall;
+#endif
+  return found_at;
 }
 
 // Into the next water ahead of p, nearer than `end`.
@@ -184,6 +222,7 @@ Surface enter(vec3 p, vec3 d, float end) {
     float ahead = i == 0 ? min(to_front, end) : mix(min(to_front, end), end, share * share);
     vec3 at = p + d * ahead;
     ivec2 pixel = ivec2(pixel_of(at));
+#ifndef SUBMERGED // whose maps know no other water
     float g = outside(at, water_at(pixel));
     if (!found && ahead > particle.x && g < -0.25 * particle.x) {
       found = true;
@@ -193,6 +232,7 @@ Surface enter(vec3 p, vec3 d, float end) {
       t.x = ahead;
       f.x = min(max(g, 1e-6), particle.x);
     }
+#endif
 #ifdef SPLASHES
     vec4 near = ball_at(texelFetch(ball_front, pixel, 0), pixel), far = ball_at(texelFetch(ball_back, pixel, 0), pixel);
     vec2 of_near = meet_ball(p, d, near), of_far = meet_ball(p, d, far);
@@ -222,7 +262,7 @@ Surface leave(vec3 p, vec3 d, vec4 ball, inout int body) {
       out_of = of_ball(p, d, meet_ball(p, d, other).y, other);
     }
     at = p + d * out_of.t;
-    if (outside(at, water_at(at)) < -0.25 * particle.x) body = AGGREGATED;
+    if (outside(at) < -0.25 * particle.x) body = AGGREGATED;
   }
 #endif
   if (body == AGGREGATED) {
@@ -312,35 +352,22 @@ void go(inout Ray ray, float t, float wet) {
   ray.p += ray.d * t;
 }
 
-// The share of a way of t metres from p that is in water. Between the front and the back that the maps show there may be
-// air, as between two sheets; then only the water takes light away.
-float wet_share(vec3 p, vec3 d, float t) {
-  const int SAMPLES = 5;
-  vec3 start = (eye.xyz + to_world(p) - grid.xyz) / grid.w, pace = to_world(d) * t / (grid.w * float(SAMPLES));
-  int wet = 0;
-  for (int i = 0; i < SAMPLES; ++i) {
-    ivec3 at = ivec3(floor(start + pace * (float(i) + 0.5)));
-    bool within = all(greaterThanEqual(at, ivec3(0))) && all(lessThan(at, cells.xyz));
-    int c = within ? (at.z * cells.y + at.y) * cells.x + at.x : 0;
-    if (within) wet += int((occupied[c >> 5] >> uint(c & 31)) & 1u);
-  }
-  return float(wet) / float(SAMPLES);
-}
-
 // Through the water to its far side, or to a solid that the water touches: then nothing of the ray is left.
 vec3 across(inout Ray ray, out Surface far_side) {
   vec3 origin = eye.xyz + to_world(ray.p), way = to_world(ray.d);
   Meeting solid = meet_scene(origin, way);
   far_side = leave(ray.p, ray.d, ray.ball, ray.body);
-  float gap = (solid.t - far_side.t) * abs(dot(ray.d, far_side.normal));
+  // The film of air between them, across whichever of the two it is wider.
+  float gap = (solid.t - far_side.t) * max(abs(dot(ray.d, far_side.normal)), abs(dot(way, solid.normal)));
   bool wet = solid.what != NOTHING && far_side.body == AGGREGATED && gap < particle.w;
   bool ends = solid.t < far_side.t || wet;
   float t = ends ? solid.t : far_side.t;
-  float share = 1.0;
-  if (!ends && far_side.body == AGGREGATED && t > 8.0 * particle.x) share = wet_share(ray.p, ray.d, t);
-  go(ray, t, share * t);
+  // Between the front and the back that the maps show there may be air, as between two sheets.
+  bool hollow = !ends && far_side.body == AGGREGATED && t > 8.0 * particle.x;
+  float path = ray.path;
+  go(ray, t, hollow ? wet_way(origin, way, t) : t);
   if (!ends) return vec3(0.0);
-  vec3 light = ray.through * light_from(origin, way, solid, pixel_at(ray.path));
+  vec3 light = ray.through * past_edges(origin, way, solid.t, path, light_from(origin, way, solid, pixel_at(ray.path)));
   ray.through = vec3(0.0);
   return light;
 }

@@ -114,7 +114,7 @@ vec3 past_edges(vec3 origin, vec3 way, float end, float path, vec3 light) {
   float t = min(ends.x, min(ends.y, ends.z));
   bool inside = all(greaterThan(origin, container_min.xyz - 1e-3)) && all(lessThan(origin, container_max.xyz + 1e-3));
   vec3 from = abs(min(origin + way * t - container_min.xyz, container_max.xyz - origin - way * t));
-    float nearest = min(max(from.x, from.y), min(max(from.y, from.z), max(from.x, from.z)));
+  float nearest = min(max(from.x, from.y), min(max(from.y, from.z), max(from.x, from.z)));
   float pixel = pixel_at(path + t), half_width = max(0.0016 * container_max.w * 0.5, 0.7 * pixel);
   float coverage = inside && t <= end + 1e-3 ? clamp((half_width - nearest) / pixel + 0.5, 0.0, 1.0) : 0.0;
   vec3 edge = sky_average(vec3(0.0, 1.0, 0.0)) + sun_colour.rgb * 0.3;

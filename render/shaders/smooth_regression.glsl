@@ -9,9 +9,12 @@ vec2 kernel(vec2 t2) {
   return k * k;
 }
 
+// window.w: a half window in pixels below which this step leaves the water as it is.
 vec2 smoothed(ivec2 at, vec2 middle) {
   int taps = int(window.x);
-  vec2 half_window = max(window.y * middle * lens.w / (2.0 * lens.y), 1.5); // pixels
+  vec2 half_window = window.y * middle * lens.w / (2.0 * lens.y); // pixels
+  bvec2 too_small = lessThan(half_window, vec2(window.w));
+  half_window = max(half_window, 1.5);
   vec2 stride = max(vec2(1.0), half_window / (window.x + 0.5));
   vec2 per_range = 1.0 / (window.z * middle * middle); // a depth that differs by d has an inverse that differs by d w²
   vec2 per_half = 1.0 / half_window;
@@ -32,6 +35,6 @@ vec2 smoothed(ivec2 at, vec2 middle) {
   vec2 determinant = s0 * s2 - s1 * s1;
   bvec2 line = greaterThan(determinant, 1e-6 * s0 * s0);
   vec2 value = mix(t0 / s0, (s2 * t0 - s1 * t1) / max(determinant, 1e-12), line);
-  return middle + value / per_range;
+  return middle + mix(value / per_range, vec2(0.0), too_small);
 }
 #endif

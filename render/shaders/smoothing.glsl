@@ -6,7 +6,7 @@
 #ifndef VERTEX_STAGE
 layout(binding = 0) uniform sampler2D inverse_depths; // of front and back
 layout(std140, binding = 1) uniform Params {
-  vec4 window;          // taps on either side; half of the window, m (0: taps lie on neighbouring pixels); range, m; clamp, m
+  vec4 window;          // taps on either side; half of the window, m (0: taps lie on neighbouring pixels); range, m; of the filter
 };
 
 vec2 inverse_at(ivec2 at) {

@@ -1,12 +1,15 @@
 // The surface of the water from its inverse depths. Of a plane n·p = d the inverse depth is affine in the ray's x and y,
 // d w = n_x x + n_y y - n_z, and so the normal is along (w_x, w_y, x w_x + y w_y - w): exact on a plane, up to its boundary.
 //
+// Where the water lies on a wall of its container, the normal is the wall's, also at the pixels beside its edges.
+//
 // ANALYTIC: the normals of the particles instead, but where a wall of the container has cut them off.
 #include "frame.glsl"
 #define OUTPUTS 2 // front, back: normal in world axes, depth
 #define FORMAT rgba32f
 #include "tile_pass.glsl"
 #ifndef VERTEX_STAGE
+#include "container.glsl"
 layout(binding = 0) uniform sampler2D inverse_depths;
 #ifdef ANALYTIC
 layout(binding = 1) uniform sampler2D raw_front; // normal in world axes, depth
@@ -46,6 +49,12 @@ void pass(ivec2 at) {
   vec4 raw_near = texelFetch(raw_front, at, 0), raw_far = texelFetch(raw_back, at, 0);
   if (abs(raw_near.w - near.w) < 1e-4 * near.w) near.xyz = raw_near.xyz;
   if (abs(raw_far.w - far.w) < 1e-4 * far.w) far.xyz = raw_far.xyz;
+#endif
+#if defined(CLIP_BOX) || defined(CLIP_GLASS)
+  vec3 way = to_world(vec3(ray, -1.0));
+  vec2 walls = room(way);
+  if (abs(walls.x - near.w) < 1e-5 * near.w) near.xyz = wall_normal(eye.xyz + way * near.w);
+  if (abs(walls.y - far.w) < 1e-5 * far.w) far.xyz = wall_normal(eye.xyz + way * far.w);
 #endif
   result_0 = near;
   result_1 = far;

@@ -129,14 +129,33 @@ static bool meets(const QualityPool *pool, double margin, const Pinhole *pinhole
   return false;
 }
 
+// Where a ray from the water first comes out of it; false where it does not do so through the surface, or within `margin`
+// radii of the outline.
+static bool leaves(const QualityPool *pool, double margin, const Pinhole *pinhole, const double ray[3],
+                   double point[3]) {
+  const double lowest = pool->level - 0.07 * pool->amplitude - 1e-6, rise = lowest - pinhole->eye[1];
+  if (rise > 0 && ray[1] <= 0) return false;
+  const double step = pool->radius / 2;
+  for (double depth = rise > 0 ? rise / ray[1] : 0;; depth += step) {
+    along(pinhole, ray, depth + step, point);
+    if (!inside(pool, point, 0) || point[1] < 0) return false;
+    if (above(pool, pinhole, ray, depth + step) < 0) continue;
+    double near = depth, far = depth + step;
+    for (int k = 0; k < 40; ++k) *(above(pool, pinhole, ray, (near + far) / 2) < 0 ? &near : &far) = (near + far) / 2;
+    along(pinhole, ray, far, point);
+    return inside(pool, point, margin * pool->radius);
+  }
+}
+
 QualityTruth quality_truth_create(const QualityPool *pool, int32_t width, int32_t height, double margin) {
   QualityTruth truth = {.pool = pool, .pinhole = pinhole_make(pool->eye, pool->target, pool->fov, width, height)};
   truth.normal = calloc(3 * (size_t)width * (size_t)height, sizeof(float));
+  const bool submerged = inside(pool, truth.pinhole.eye, 0) && above(pool, &truth.pinhole, (double[3]){0}, 0) < 0;
   for (int32_t row = 0; row < height; ++row) {
     for (int32_t column = 0; column < width; ++column) {
       double ray[3], point[3], normal[3], view[3];
       pinhole_ray(&truth.pinhole, column, row, ray);
-      if (!meets(pool, margin, &truth.pinhole, ray, point)) continue;
+      if (!(submerged ? leaves : meets)(pool, margin, &truth.pinhole, ray, point)) continue;
       quality_height(pool, point[0], point[2], normal);
       pinhole_to_view(&truth.pinhole, normal, view);
       float *to = truth.normal + 3 * ((size_t)row * (size_t)width + (size_t)column);
@@ -177,6 +196,28 @@ static double height_over(const QualityTruth *truth, size_t pixel, float depth) 
   return (p[1] - height) * normal[1] / truth->pool->radius;
 }
 
+static bool is_seen(const float normal[3]) {
+  return normal[0] != 0 || normal[1] != 0 || normal[2] != 0;
+}
+
+static double grain(const QualityTruth *truth, const SplatMap *map) {
+  const size_t width = (size_t)truth->pinhole.lens.width, height = (size_t)truth->pinhole.lens.height;
+  double sum = 0;
+  size_t pairs = 0;
+  for (size_t row = 0; row + 1 < height; ++row) {
+    for (size_t column = 0; column + 1 < width; ++column) {
+      const size_t i = row * width + column, next[2] = {i + 1, i + width};
+      for (int k = 0; k < 2; ++k) {
+        const float *here = truth->normal + 3 * i, *there = truth->normal + 3 * next[k];
+        if (!is_seen(here) || !is_seen(there) || map->depth[i] <= 0 || map->depth[next[k]] <= 0) continue;
+        sum += angle(map->normal + 3 * i, map->normal + 3 * next[k]) - angle(here, there);
+        ++pairs;
+      }
+    }
+  }
+  return pairs > 0 ? sum / (double)pairs : 0;
+}
+
 QualityFigures quality_compare(const QualityTruth *truth, const SplatMap *still, const SplatMap *shifted) {
   const size_t pixels = (size_t)truth->pinhole.lens.width * (size_t)truth->pinhole.lens.height;
   double *angles = malloc(pixels * sizeof *angles);
@@ -185,7 +226,7 @@ QualityFigures quality_compare(const QualityTruth *truth, const SplatMap *still,
   double squares = 0;
   for (size_t i = 0; i < pixels; ++i) {
     const float *n = truth->normal + 3 * i;
-    if (n[0] == 0 && n[1] == 0 && n[2] == 0) continue;
+    if (!is_seen(n)) continue;
     ++seen;
     if (still->depth[i] <= 0) continue;
     angles[met] = angle(still->normal + 3 * i, n);
@@ -204,6 +245,7 @@ QualityFigures quality_compare(const QualityTruth *truth, const SplatMap *still,
   f.rough = sqrt(fmax(squares / (double)met - f.bias * f.bias, 0));
   f.flicker /= (double)both;
   f.lost = 1 - (double)met / (double)seen;
+  f.grain = grain(truth, still);
   free(angles);
   return f;
 }

@@ -44,7 +44,8 @@ typedef struct QualityTruth {
   float *normal; ///< view space, (height, width, 3); 0 where the surface is not seen
 } QualityTruth;
 
-/// Only what lies at least `margin` radii inside the pool's outline counts as seen.
+/// Only what lies at least `margin` radii inside the pool's outline counts as seen. The eye may be in the water: then what
+/// is seen is where a ray first comes out of it.
 QualityTruth quality_truth_create(const QualityPool *pool, int32_t width, int32_t height, double margin);
 void quality_truth_destroy(QualityTruth *truth);
 
@@ -53,6 +54,7 @@ typedef struct QualityFigures {
   double flicker;   ///< degrees, mean change of the normal under the shift
   double bias;      ///< radii, mean distance above the true surface
   double rough;     ///< radii, standard deviation of that distance
+  double grain;     ///< degrees, mean angle between the normals of neighbouring pixels, less what it is in truth
   double lost;      ///< share of pixels without a depth
 } QualityFigures;
 

@@ -30,7 +30,7 @@ static void floor_light(const RenderSettings *s, const double p[3], double light
 }
 
 static void air_light(const Slab *slab, const Path *path, double light[3]) {
-  if (path->d[1] >= 0) {
+  if (path->d[1] >= 0 || slab->settings->floor == RENDER_FLOOR_NONE) {
     sky_light(slab->settings, path->d[1], light);
     return;
   }
@@ -103,7 +103,7 @@ static SlabPixel in_water(const Slab *slab, const Path *path, int left) {
   }
   const Path at = moved(path, t);
   SlabPixel pixel = {.way = 0, .margin = INFINITY};
-  if (face == SLAB_TOP - 1) {
+  if (face == SLAB_TOP - 1 && slab->settings->floor != RENDER_FLOOR_NONE) {
     face = SLAB_FLOOR;
     floor_light(slab->settings, at.p, pixel.light);
   } else {

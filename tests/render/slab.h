@@ -1,4 +1,5 @@
-// What the eye sees of a box of water that stands on the checker, computed: all rays that leave a surface are followed.
+// What the eye sees of a box of water that stands on the checker, or hangs over nothing, computed: all rays that leave a
+// surface are followed.
 //
 // Snell's law, Schlick's reflectance with the cosine on the air's side, Beer–Lambert (REFERENCE.md, section 6). A box is
 // convex, so that a ray outside of it never comes back to the water; the floor sends back its colour and ends a ray.

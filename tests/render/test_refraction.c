@@ -392,6 +392,62 @@ static void test_total_reflection(void **state) {
   check_layer("below the surface, beyond the critical angle", &layer, &view, 0, top_then_floor);
 }
 
+// Where a surface is torn, single pixels see other things than those around them.
+enum { WINDOW = 5, WINDOW_PIXELS = WINDOW * WINDOW };
+
+static int neighbour(int x, int y, int k) {
+  return (y + k / WINDOW - WINDOW / 2) * WIDTH + x + k % WINDOW - WINDOW / 2;
+}
+
+// How far a pixel is from the median of its neighbourhood, the mean of its channels.
+static double from_median(const double *rgb, int x, int y) {
+  double sum = 0;
+  for (int channel = 0; channel < 3; ++channel) {
+    double around[WINDOW_PIXELS];
+    for (int k = 0; k < WINDOW_PIXELS; ++k) around[k] = rgb[3 * neighbour(x, y, k) + channel];
+    qsort(around, WINDOW_PIXELS, sizeof *around, by_size);
+    sum += fabs(rgb[3 * (y * WIDTH + x) + channel] - around[WINDOW_PIXELS / 2]);
+  }
+  return sum / 3;
+}
+
+static int count_specks(const double *rgb) {
+  int specks = 0;
+  for (int y = WINDOW / 2; y < HEIGHT - WINDOW / 2; ++y)
+    for (int x = WINDOW / 2; x < WIDTH - WINDOW / 2; ++x) specks += from_median(rgb, x, y) > 12;
+  return specks;
+}
+
+static int specks_of_picture(const Water *water) {
+  static double light[3 * PIXELS];
+  uint8_t *rgb = harness_draw(&harness, &water->frame, &water->view, &water->settings);
+  for (int i = 0; i < 3 * PIXELS; ++i) light[i] = rgb[i];
+  free(rgb);
+  return count_specks(light);
+}
+
+// Of flat water there is a truth, with few edges where there is no floor. The eye looks along the tank.
+static void test_no_specks_in_a_flat_pool(void **state) {
+  (void)state;
+  static double light[3 * PIXELS];
+  const Layer layer = {{60, 11, 30}, 0.0175, 0.5, true};
+  const double d = 2 * layer.radius;
+  Water water = layer_create(&layer, 0);
+  layer_ready(&water, &layer);
+  water.settings.floor = RENDER_FLOOR_NONE;
+  water.view = (RenderView){{0.3f, 0.15f, 0.5f}, {2, 0.3f, 0.55f}, 50};
+  const Slab slab = {{0, 0, 0}, {d * layer.size[0], d * layer.size[1], d * layer.size[2]}, &water.settings};
+  for (int i = 0; i < PIXELS; ++i) {
+    const Ray ray = harness_ray(&water.view, WIDTH, HEIGHT, i % WIDTH, i / WIDTH);
+    const SlabPixel pixel = slab_look(&slab, &ray);
+    for (int k = 0; k < 3; ++k) light[3 * i + k] = 255 * fmin(fmax(pixel.light[k], 0), 1);
+  }
+  const int of_truth = count_specks(light), specks = specks_of_picture(&water);
+  print_message("flat pool, along: %d specks, in truth %d\n", specks, of_truth);
+  water_destroy(&water);
+  assert_true(specks <= of_truth + PIXELS / 1000);
+}
+
 // ---- A drop before a pool --------------------------------------------------------------------------------------------
 
 // A drop closely above a pool that fills the picture.
@@ -518,6 +574,7 @@ int main(void) {
       cmocka_unit_test(test_pool_from_above),
       cmocka_unit_test(test_pool_through_its_side),
       cmocka_unit_test(test_total_reflection),
+      cmocka_unit_test(test_no_specks_in_a_flat_pool),
       cmocka_unit_test(test_drop_before_pool),
       cmocka_unit_test(test_figures),
       cmocka_unit_test(test_figures_without_water),

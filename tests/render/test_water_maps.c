@@ -14,11 +14,20 @@
 // Waves and drops from a little above; a radius covers 2 to 4 pixels, and water reaches the picture's rim.
 static const RenderView over_pool = {{1.9f, 0.75f, 1.7f}, {1.7f, 0.25f, 0.5f}, 40};
 
+// Closely over the water, towards its far end: a radius covers 27 pixels, and a few at the far end.
+static const RenderView near_pool = {{0.8f, 0.36f, 0.9f}, {1.4f, 0.2f, 0.5f}, 25};
+
+// What a view shows of the pool with `none` at the default shape.
+typedef struct Look {
+  const RenderView *view;
+  Pinhole pinhole;
+  WaterMaps raw;
+} Look;
+
 typedef struct Scene {
   Harness harness;
   TestWater pool;
-  Pinhole pinhole;
-  WaterMaps raw; // of `none` at the default shape
+  Look over, near;
 } Scene;
 
 static RenderSettings style_settings(RenderSmoothing smoothing) {
@@ -28,93 +37,46 @@ static RenderSettings style_settings(RenderSmoothing smoothing) {
   return settings;
 }
 
+static Look look(Scene *s, const RenderView *view) {
+  const RenderSettings settings = style_settings(RENDER_SMOOTHING_NONE);
+  return (Look){view, water_pinhole(view, WIDTH, HEIGHT),
+                water_maps_draw(&s->harness, &s->pool.frame, view, &settings)};
+}
+
 static int open_scene(void **state) {
   Scene *s = calloc(1, sizeof *s);
   s->harness = harness_open(CONTEXT_AUTO, WIDTH, HEIGHT);
   TestFrame *t = test_frame_pool();
   s->pool = test_water_create(t->position, t->frame.count, t->frame.particle_radius, NULL);
   test_frame_destroy(t);
-  s->pinhole = water_pinhole(&over_pool, WIDTH, HEIGHT);
-  const RenderSettings settings = style_settings(RENDER_SMOOTHING_NONE);
-  s->raw = water_maps_draw(&s->harness, &s->pool.frame, &over_pool, &settings);
+  s->over = look(s, &over_pool);
+  s->near = look(s, &near_pool);
   *state = s;
   return 0;
 }
 
 static int close_scene(void **state) {
   Scene *s = *state;
-  water_maps_destroy(&s->raw);
+  water_maps_destroy(&s->over.raw);
+  water_maps_destroy(&s->near.raw);
   test_water_destroy(&s->pool);
   harness_close(&s->harness);
   free(s);
   return 0;
 }
 
-// ---- Comparing -------------------------------------------------------------------------------------------------------
-
-static int ascending(const void *a, const void *b) {
-  const double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
-static double length_of_difference(const float a[3], const float b[3]) {
-  double sum = 0;
-  for (int k = 0; k < 3; ++k) sum += ((double)a[k] - (double)b[k]) * ((double)a[k] - (double)b[k]);
-  return sqrt(sum);
-}
-
-// How two maps differ: depths in radii, normals as lengths, each up to which 99.9 % of the pixels with a depth in both lie.
-typedef struct Difference {
-  double depth, normal, largest_depth, largest_normal;
-  size_t both, one; // pixels with a depth in both, in one of them
-} Difference;
-
-static Difference compare(const SplatMap *a, const SplatMap *b, double radius) {
-  double *depth = malloc(2 * PIXELS * sizeof *depth), *normal = depth + PIXELS;
-  Difference d = {0};
-  for (size_t i = 0; i < PIXELS; ++i) {
-    if (a->depth[i] > 0 && b->depth[i] > 0) {
-      depth[d.both] = fabs((double)a->depth[i] - (double)b->depth[i]) / radius;
-      normal[d.both++] = length_of_difference(a->normal + 3 * i, b->normal + 3 * i);
-    } else {
-      d.one += a->depth[i] > 0 || b->depth[i] > 0;
-    }
-  }
-  assert_true(d.both > PIXELS / 100);
-  qsort(depth, d.both, sizeof *depth, ascending);
-  qsort(normal, d.both, sizeof *normal, ascending);
-  const size_t most = (size_t)(0.999 * (double)(d.both - 1));
-  d.depth = depth[most];
-  d.normal = normal[most];
-  d.largest_depth = depth[d.both - 1];
-  d.largest_normal = normal[d.both - 1];
-  free(depth);
-  return d;
-}
-
-static void print_difference(const char *what, int side, const Difference *d) {
-  print_message("%-24s %-5s %6zu pixels, %zu in one only: depth %.2g r (largest %.2g), normal %.2g (largest %.2g)\n",
-                what, side == 0 ? "front" : "back", d->both, d->one, d->depth, d->largest_depth, d->normal,
-                d->largest_normal);
-}
-
 // ---- Particles -------------------------------------------------------------------------------------------------------
 
 static void splat_both(const Scene *s, SimClass class, SplatShape shape, SplatMap out[2]) {
   for (int side = 0; side < 2; ++side) {
-    out[side] = splat_map_create(&s->pinhole.lens);
-    splat_frame(&s->pinhole, (SplatSide)side, &s->pool.frame, class, shape, &out[side]);
+    out[side] = splat_map_create(&s->over.pinhole.lens);
+    splat_frame(&s->over.pinhole, (SplatSide)side, &s->pool.frame, class, shape, &out[side]);
   }
 }
 
-// Where a ray grazes an ellipsoid, its depth is the root of a small difference: the few such pixels may be off by more.
 static void expect_raw_maps(const char *what, const Scene *s, const SplatMap got[2], const SplatMap want[2]) {
   for (int side = 0; side < 2; ++side) {
-    const Difference d = compare(&got[side], &want[side], (double)s->pool.frame.particle_radius);
-    print_difference(what, side, &d);
-    assert_true(d.depth < 1e-3);
-    assert_true(d.normal < 1e-3);
-    assert_true(d.one <= d.both / 1000);
+    water_expect_raw(what, (SplatSide)side, &got[side], &want[side], PIXELS, (double)s->pool.frame.particle_radius);
   }
 }
 
@@ -226,44 +188,82 @@ static void bilateral(const SmoothInput side[2], const void *parameters, float *
 }
 
 // What the twin makes of the renderer's own raw maps; normals outward, as the renderer has them.
-static WaterMaps smooth_twin(const Scene *s, Twin *twin, const void *parameters) {
-  const double r = (double)s->pool.frame.particle_radius;
-  const SmoothInput in[2] = {{s->pinhole.lens, r, s->raw.side[0].depth, s->raw.side[0].normal},
-                             {s->pinhole.lens, r, s->raw.side[1].depth, s->raw.side[1].normal}};
+static WaterMaps smooth_twin(const Look *seen, double radius, Twin *twin, const void *parameters) {
+  const Lens *lens = &seen->pinhole.lens;
+  const SplatMap *raw = seen->raw.side;
+  const SmoothInput in[2] = {{*lens, radius, raw[0].depth, raw[0].normal},
+                             {*lens, radius, raw[1].depth, raw[1].normal}};
   WaterMaps out;
-  for (int side = 0; side < 2; ++side) out.side[side] = splat_map_create(&s->pinhole.lens);
+  for (int side = 0; side < 2; ++side) out.side[side] = splat_map_create(lens);
   twin(in, parameters, (float *const[2]){out.side[0].depth, out.side[1].depth});
-  for (int side = 0; side < 2; ++side) {
-    smooth_normals(&s->pinhole.lens, r, out.side[side].depth, out.side[side].normal);
-  }
+  for (int side = 0; side < 2; ++side) smooth_normals(lens, radius, out.side[side].depth, out.side[side].normal);
   for (size_t i = 0; i < 3 * PIXELS; ++i) out.side[1].normal[i] *= -1;
   return out;
 }
 
 // Both read the same maps, so that all that differs is rounding: a float of 1.5 m has a spacing of 1.2e-7 m, which is 7e-6
 // radii, and inverting a depth and adding up a window lose some of them.
-static void expect_filter(Scene *s, const char *what, const RenderSettings *settings, Twin *twin,
-                          const void *parameters) {
-  WaterMaps got = water_maps_draw(&s->harness, &s->pool.frame, &over_pool, settings);
-  WaterMaps want = smooth_twin(s, twin, parameters);
+static void expect_filter_of(Scene *s, const Look *seen, const char *what, const RenderSettings *settings, Twin *twin,
+                             const void *parameters) {
+  const double r = (double)s->pool.frame.particle_radius;
+  WaterMaps got = water_maps_draw(&s->harness, &s->pool.frame, seen->view, settings);
+  WaterMaps want = smooth_twin(seen, r, twin, parameters);
+  WaterDifference d[2];
   for (int side = 0; side < 2; ++side) {
-    const Difference d = compare(&got.side[side], &want.side[side], (double)s->pool.frame.particle_radius);
-    print_difference(what, side, &d);
+    d[side] = water_maps_compare(&got.side[side], &want.side[side], PIXELS, r);
+    water_difference_print(what, (SplatSide)side, &d[side]);
   }
   for (int side = 0; side < 2; ++side) {
-    const Difference d = compare(&got.side[side], &want.side[side], (double)s->pool.frame.particle_radius);
-    assert_int_equal(d.one, 0);
-    assert_true(d.depth < 2e-4);
-    assert_true(d.largest_depth < 1e-3);
-    assert_true(d.largest_normal < 1e-3);
+    assert_int_equal(d[side].one, 0);
+    assert_true(d[side].depth < 2e-4);
+    assert_true(d[side].largest_depth < 1e-3);
+    assert_true(d[side].largest_normal < 1e-3);
   }
   water_maps_destroy(&got);
   water_maps_destroy(&want);
 }
 
+static void expect_filter(Scene *s, const char *what, const RenderSettings *settings, Twin *twin,
+                          const void *parameters) {
+  expect_filter_of(s, &s->over, what, settings, twin, parameters);
+}
+
 static void test_regression(void **state) {
   const RenderSettings settings = style_settings(RENDER_SMOOTHING_REGRESSION);
   expect_filter(*state, "regression", &settings, regression, &smooth_regression_default);
+}
+
+// Pixels that a radius covers where a centre of the aggregated water in the picture is nearest. Smoothed centres will do:
+// that the drawn ones are lifted matters only by a few percent.
+static double largest_radius(const Scene *s, const Pinhole *p) {
+  const SimFrame *frame = &s->pool.frame;
+  const double r = (double)frame->particle_radius;
+  double nearest = INFINITY;
+  for (size_t i = 0; i < (size_t)frame->count; ++i) {
+    if (frame->particle_class[i] != SIM_AGGREGATED || !frame->near_surface[i]) continue;
+    double v[3], view[3];
+    for (size_t k = 0; k < 3; ++k) v[k] = (double)frame->smoothed[3 * i + k] - p->eye[k];
+    pinhole_to_view(p, v, view);
+    const double depth = -view[2];
+    if (depth > 1.5 * r && depth < nearest && fabs(view[0]) < depth * p->lens.tan_x + r &&
+        fabs(view[1]) < depth * p->lens.tan_y + r)
+      nearest = depth;
+  }
+  return r / nearest / lens_pixel(&p->lens);
+}
+
+// Near the eye the default has more taps and finer steps.
+static void test_regression_near(void **state) {
+  Scene *s = *state;
+  const double pixels = largest_radius(s, &s->near.pinhole);
+  const SmoothRegression steps = smooth_regression_near(pixels);
+  print_message("regression near: a radius covers %.1f pixels, %d steps\n", pixels, steps.step_count);
+  assert_true(pixels > 20 && steps.step_count > 4);
+  // No step hangs on how exactly that is known.
+  assert_int_equal(smooth_regression_near(0.9 * pixels).step_count, steps.step_count);
+  assert_int_equal(smooth_regression_near(1.1 * pixels).step_count, steps.step_count);
+  const RenderSettings settings = style_settings(RENDER_SMOOTHING_REGRESSION);
+  expect_filter_of(s, &s->near, "regression near", &settings, regression, &steps);
 }
 
 static void test_plane_fit(void **state) {
@@ -303,9 +303,9 @@ static void test_narrow_range(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_ellipsoids),   cmocka_unit_test(test_splashes),  cmocka_unit_test(test_surface_only),
-      cmocka_unit_test(test_regression),   cmocka_unit_test(test_plane_fit), cmocka_unit_test(test_bilateral),
-      cmocka_unit_test(test_narrow_range),
+      cmocka_unit_test(test_ellipsoids), cmocka_unit_test(test_splashes),        cmocka_unit_test(test_surface_only),
+      cmocka_unit_test(test_regression), cmocka_unit_test(test_regression_near), cmocka_unit_test(test_plane_fit),
+      cmocka_unit_test(test_bilateral),  cmocka_unit_test(test_narrow_range),
   };
   return cmocka_run_group_tests(tests, open_scene, close_scene);
 }

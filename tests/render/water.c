@@ -1,5 +1,6 @@
 #include "tests/render/water.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 TestWater test_water_create(const float *position, int32_t count, float particle_radius,
@@ -25,26 +26,80 @@ Pinhole water_pinhole(const RenderView *view, int32_t width, int32_t height) {
   return pinhole_make(view->eye, view->target, view->vertical_fov, width, height);
 }
 
-WaterMaps water_maps_draw(Harness *harness, const SimFrame *frame, const RenderView *view,
-                          const RenderSettings *settings) {
+SplatMap water_map_draw(Harness *harness, SplatSide side, const SimFrame *frame, const RenderView *view,
+                        const RenderSettings *settings) {
   static const char *const names[2][2] = {{"front_depth", "front_normal"}, {"back_depth", "back_normal"}};
   const Pinhole pinhole = water_pinhole(view, harness->width, harness->height);
   const size_t pixels = (size_t)harness->width * (size_t)harness->height;
-  WaterMaps maps;
-  for (int side = 0; side < 2; ++side) {
-    maps.side[side].depth = harness_layer(harness, names[side][0], 1, frame, view, settings);
-    maps.side[side].normal = harness_layer(harness, names[side][1], 3, frame, view, settings);
-    for (size_t i = 0; i < pixels; ++i) {
-      float *normal = maps.side[side].normal + 3 * i;
-      const double world[3] = {(double)normal[0], (double)normal[1], (double)normal[2]};
-      double turned[3];
-      pinhole_to_view(&pinhole, world, turned);
-      for (int k = 0; k < 3; ++k) normal[k] = (float)turned[k];
-    }
+  const SplatMap map = {.depth = harness_layer(harness, names[side][0], 1, frame, view, settings),
+                        .normal = harness_layer(harness, names[side][1], 3, frame, view, settings)};
+  for (size_t i = 0; i < pixels; ++i) {
+    float *normal = map.normal + 3 * i;
+    const double world[3] = {(double)normal[0], (double)normal[1], (double)normal[2]};
+    double turned[3];
+    pinhole_to_view(&pinhole, world, turned);
+    for (int k = 0; k < 3; ++k) normal[k] = (float)turned[k];
   }
-  return maps;
+  return map;
+}
+
+WaterMaps water_maps_draw(Harness *harness, const SimFrame *frame, const RenderView *view,
+                          const RenderSettings *settings) {
+  return (WaterMaps){{water_map_draw(harness, SPLAT_FRONT, frame, view, settings),
+                      water_map_draw(harness, SPLAT_BACK, frame, view, settings)}};
 }
 
 void water_maps_destroy(WaterMaps *maps) {
   for (int side = 0; side < 2; ++side) splat_map_destroy(&maps->side[side]);
+}
+
+// ---- Comparing -------------------------------------------------------------------------------------------------------
+
+static int ascending(const void *a, const void *b) {
+  const double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+static double length_of_difference(const float a[3], const float b[3]) {
+  double sum = 0;
+  for (int k = 0; k < 3; ++k) sum += ((double)a[k] - (double)b[k]) * ((double)a[k] - (double)b[k]);
+  return sqrt(sum);
+}
+
+WaterDifference water_maps_compare(const SplatMap *a, const SplatMap *b, size_t pixels, double radius) {
+  double *depth = malloc(2 * pixels * sizeof *depth), *normal = depth + pixels;
+  WaterDifference d = {0};
+  for (size_t i = 0; i < pixels; ++i) {
+    if (a->depth[i] > 0 && b->depth[i] > 0) {
+      depth[d.both] = fabs((double)a->depth[i] - (double)b->depth[i]) / radius;
+      normal[d.both++] = length_of_difference(a->normal + 3 * i, b->normal + 3 * i);
+    } else {
+      d.one += a->depth[i] > 0 || b->depth[i] > 0;
+    }
+  }
+  assert_true(d.both > pixels / 100);
+  qsort(depth, d.both, sizeof *depth, ascending);
+  qsort(normal, d.both, sizeof *normal, ascending);
+  const size_t most = (size_t)(0.999 * (double)(d.both - 1));
+  d.depth = depth[most];
+  d.normal = normal[most];
+  d.largest_depth = depth[d.both - 1];
+  d.largest_normal = normal[d.both - 1];
+  free(depth);
+  return d;
+}
+
+void water_difference_print(const char *what, SplatSide side, const WaterDifference *d) {
+  print_message("%-24s %-5s %6zu pixels, %zu in one only: depth %.2g r (largest %.2g), normal %.2g (largest %.2g)\n",
+                what, side == SPLAT_FRONT ? "front" : "back", d->both, d->one, d->depth, d->largest_depth, d->normal,
+                d->largest_normal);
+}
+
+void water_expect_raw(const char *what, SplatSide side, const SplatMap *got, const SplatMap *want, size_t pixels,
+                      double radius) {
+  const WaterDifference d = water_maps_compare(got, want, pixels, radius);
+  water_difference_print(what, side, &d);
+  assert_true(d.depth < 1e-3);
+  assert_true(d.normal < 1e-3);
+  assert_true(d.one <= d.both / 1000);
 }

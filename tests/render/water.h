@@ -26,5 +26,21 @@ typedef struct WaterMaps {
 WaterMaps water_maps_draw(Harness *harness, const SimFrame *frame, const RenderView *view,
                           const RenderSettings *settings);
 void water_maps_destroy(WaterMaps *maps);
+/// One of its sides.
+SplatMap water_map_draw(Harness *harness, SplatSide side, const SimFrame *frame, const RenderView *view,
+                        const RenderSettings *settings);
+
+/// How two maps differ: depths in radii, normals as lengths, each up to which 99.9 % of the pixels with a depth in both lie.
+typedef struct WaterDifference {
+  double depth, normal, largest_depth, largest_normal;
+  size_t both, one; ///< pixels with a depth in both, in one of them
+} WaterDifference;
+/// Fails the test where hardly a pixel has a depth in both.
+WaterDifference water_maps_compare(const SplatMap *a, const SplatMap *b, size_t pixels, double radius);
+void water_difference_print(const char *what, SplatSide side, const WaterDifference *difference);
+/// Fails the test where two maps of the particles as they are differ by more than rounding. Where a ray grazes an
+/// ellipsoid, its depth is the root of a small difference: the few such pixels may be off by more.
+void water_expect_raw(const char *what, SplatSide side, const SplatMap *got, const SplatMap *want, size_t pixels,
+                      double radius);
 
 #endif

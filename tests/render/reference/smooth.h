@@ -48,15 +48,19 @@ void smooth_narrow_range_sides(const SmoothInput side[], int32_t count, const Sm
 
 /// Regression of the inverse depth along rows, then columns (smooth_regression.c).
 typedef struct SmoothStep {
-  int32_t taps; ///< on either side of the middle
-  double reach; ///< half of the window in particle radii on the spot
+  int32_t taps;     ///< on either side of the middle
+  double reach;     ///< half of the window in particle radii on the spot
+  double too_small; ///< half of a window in pixels below which the step leaves a pixel as it is; 0: never
 } SmoothStep;
+enum { SMOOTH_REGRESSION_STEPS = 9 };
 typedef struct SmoothRegression {
   int32_t step_count;
-  SmoothStep steps[6];
+  SmoothStep steps[SMOOTH_REGRESSION_STEPS];
   double range; ///< depths that differ by this many particle radii do not count
 } SmoothRegression;
 extern const SmoothRegression smooth_regression_default; ///< 62 taps a pixel
+/// The default where a particle's radius covers at most `largest` pixels: with more taps and finer steps near the eye.
+SmoothRegression smooth_regression_near(double largest);
 void smooth_regression(const SmoothInput *input, const SmoothRegression *parameters, float *smoothed);
 
 /// Unit normals of a depth map in view space, towards the viewer; (height, width, 3), 0 where there is nothing.

@@ -13,7 +13,24 @@
 
 #include "tests/render/reference/smooth.h"
 
-const SmoothRegression smooth_regression_default = {.step_count = 3, .steps = {{5, 4.5}, {5, 2}, {4, 0.8}}, .range = 7};
+const SmoothRegression smooth_regression_default = {
+    .step_count = 3, .steps = {{5, 4.5, 0}, {5, 2, 0}, {4, 0.8, 0}}, .range = 7};
+
+// A window of 4 taps on either side covers 4.5 pixels on either side where the taps are neighbours. Half as far again they
+// begin to miss what lies between them: then every step has twice the taps, and steps follow whose windows are as wide as
+// the gap of two taps before them, until none misses anything.
+SmoothRegression smooth_regression_near(double largest) {
+  const double covered = 4.5, widest = 1.5 * covered;
+  SmoothRegression p = smooth_regression_default;
+  double reach = p.steps[2].reach;
+  if (reach * largest <= widest) return p;
+  for (int32_t i = 0; i < 3; ++i) p.steps[i].taps *= 2;
+  while (p.step_count < SMOOTH_REGRESSION_STEPS && reach * largest > widest) {
+    reach = reach * 2 / covered;
+    p.steps[p.step_count++] = (SmoothStep){4, reach, 1.5};
+  }
+  return p;
+}
 
 // (1 − t²)², close to a Gaussian and without an exponential
 static double kernel(double t) {
@@ -48,12 +65,14 @@ static double line_value(const Sums *s) {
 
 // Half of the window in pixels where the inverse depth is w.
 static double half_window(const SmoothInput *input, const SmoothStep *step, double w) {
-  return fmax(step->reach * input->radius * w / lens_pixel(&input->lens), 1.5);
+  return step->reach * input->radius * w / lens_pixel(&input->lens);
 }
 
 static double along_line(const SmoothInput *input, const SmoothRegression *p, const SmoothStep *step,
                          const float *inverse, int32_t column, int32_t row, bool vertical) {
-  const double w = inverse_at(&input->lens, inverse, column, row), half = half_window(input, step, w);
+  const double w = inverse_at(&input->lens, inverse, column, row), window = half_window(input, step, w);
+  if (window < step->too_small) return w;
+  const double half = fmax(window, 1.5);
   // A depth that differs by δ has an inverse that differs by about δ w².
   const double range = p->range * input->radius * w * w, stride = fmax(half / (step->taps + 0.5), 1);
   Sums sums = {.w = 1};

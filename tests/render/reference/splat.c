@@ -6,7 +6,7 @@
 
 SplatMap splat_map_create(const Lens *lens) {
   const size_t pixels = (size_t)lens->width * (size_t)lens->height;
-  return (SplatMap){calloc(pixels, sizeof(float)), calloc(3 * pixels, sizeof(float))};
+  return (SplatMap){calloc(pixels, sizeof(float)), calloc(3 * pixels, sizeof(float)), NULL};
 }
 
 void splat_map_destroy(SplatMap *map) {
@@ -69,10 +69,12 @@ static Box covered(const Pinhole *p, const double centre[3], const double t[6]) 
   return box;
 }
 
-// Nearest entry or farthest exit that a map holds so far.
-static bool beats(SplatSide side, double depth, float present) {
+// Is this entry nearer, or this exit within the limit farther, than what a map holds so far at pixel i?
+static bool beats(SplatSide side, double depth, const SplatMap *map, size_t i) {
+  const double present = (double)map->depth[i];
   if (depth <= 0) return false;
-  return present <= 0 || (side == SPLAT_FRONT ? depth < (double)present : depth > (double)present);
+  if (side == SPLAT_BACK && map->limit != NULL && depth > (double)map->limit[i]) return false;
+  return present <= 0 || (side == SPLAT_FRONT ? depth < present : depth > present);
 }
 
 void splat_ellipsoid(const Pinhole *pinhole, SplatSide side, const float centre[3], const float t[6], double scale,
@@ -93,7 +95,7 @@ void splat_ellipsoid(const Pinhole *pinhole, SplatSide side, const float centre[
       if (quarter <= 0) continue;
       const double depth = side == SPLAT_FRONT ? middle - sqrt(quarter) : middle + sqrt(quarter);
       const size_t i = (size_t)row * (size_t)pinhole->lens.width + (size_t)column;
-      if (!beats(side, depth, map->depth[i])) continue;
+      if (!beats(side, depth, map, i)) continue;
       double unit[3], gradient[3], normal[3];
       for (int k = 0; k < 3; ++k) unit[k] = depth * d[k] - from[k];
       multiply(inverse, unit, gradient);

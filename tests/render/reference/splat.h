@@ -13,8 +13,9 @@ typedef enum SplatSide { SPLAT_FRONT = 0, SPLAT_BACK = 1 } SplatSide;
 
 /// Depths along the view axis and outward normals in view space; both 0 where there is nothing.
 typedef struct SplatMap {
-  float *depth;  ///< m, (height, width)
-  float *normal; ///< unit, (height, width, 3)
+  float *depth;       ///< m, (height, width)
+  float *normal;      ///< unit, (height, width, 3)
+  const float *limit; ///< m, (height, width): depths beyond which no exit counts, the caller's; NULL: all count
 } SplatMap;
 
 SplatMap splat_map_create(const Lens *lens); ///< empty
