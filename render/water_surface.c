@@ -83,7 +83,7 @@ bool render_water_surface_depths(RenderWaterSurface *surface, RenderPicture *pic
   gpu_clear_colour(&surface->surface_target, 0, nothing);
   gpu_clear_colour(&surface->surface_target, 1, nothing);
   surface->submerged = around != NULL;
-  surface->smoothed = 0;
+  surface->smoothed = surface->uncut = 0;
   render_quadrics_clear(RENDER_DEPTHS, &surface->raw_target);
   if (surface->submerged && !find_air(surface, picture, around, error)) return false;
   const RenderQuadricPass pass = {.kind = RENDER_ELLIPSOIDS,
@@ -144,7 +144,9 @@ static bool write_normals(RenderWaterSurface *surface, RenderPicture *picture, b
       .desc = {"water normals", "water_normals.glsl", defines},
       .target = &surface->surface_target,
       .out = {&surface->front, &surface->back},
-      .in = {.textures = {&surface->inverse[surface->smoothed]}, .params = bend, .params_size = sizeof bend}};
+      .in = {.textures = {[0] = &surface->inverse[surface->smoothed], [3] = &surface->inverse[surface->uncut]},
+             .params = bend,
+             .params_size = sizeof bend}};
   if (analytic) {
     pass.in.textures[1] = &surface->raw_normal[RENDER_FRONT];
     pass.in.textures[2] = &surface->raw_normal[RENDER_BACK];
@@ -269,6 +271,7 @@ static bool clip(RenderWaterSurface *surface, RenderPicture *picture, RenderErro
   char defines[64];
   snprintf(defines, sizeof defines, "%s%s", render_water_surface_clip_define(picture->frame),
            surface->submerged ? "#define SUBMERGED 1\n" : "");
+  surface->uncut = surface->smoothed;
   if (defines[0] == '\0') return true;
   const int from = surface->smoothed, to = 1 - from;
   surface->smoothed = to;

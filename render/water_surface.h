@@ -21,6 +21,7 @@ typedef struct RenderWaterSurface {
   GpuTexture inverse[2]; // 1 / depth of front and back, smoothed by turns from one into the other
   GpuTarget inverse_target[2];
   int smoothed; // which of them the last pass wrote
+  int uncut;    // which holds the surface before the container's walls cut it off
   GpuProgram smoothing_program[2];
   GpuProgram normal_program[2];
   GpuTarget surface_target; // both of
@@ -45,7 +46,7 @@ const char *render_water_surface_clip_define(const SimFrame *frame);
 /// off at the container's walls; where the eye is in the water its front is at the near distance.
 bool render_water_surface_smooth(RenderWaterSurface *surface, RenderPicture *picture, const RenderQuadrics *quadrics,
                                  RenderError *error);
-/// Input: inverse[smoothed]. Output: front and back.
+/// Input: inverse[smoothed], inverse[uncut]. Output: front and back.
 bool render_water_surface_normals(RenderWaterSurface *surface, RenderPicture *picture, RenderError *error);
 
 #endif

@@ -1,7 +1,8 @@
 // The surface of the water from its inverse depths. Of a plane n·p = d the inverse depth is affine in the ray's x and y,
 // d w = n_x x + n_y y - n_z, and so the normal is along (w_x, w_y, x w_x + y w_y - w): exact on a plane, up to its boundary.
 //
-// Where the water lies on a wall of its container, the normal is the wall's, also at the pixels beside its edges.
+// Where the water lies on a wall of its container, the normal is the wall's. Elsewhere it is of the surface before the walls
+// cut it off: so near a wall too it is of the surface alone, and not of a mixture of both.
 //
 // ANALYTIC: the normals of the particles instead, but where a wall of the container has cut them off.
 #include "frame.glsl"
@@ -11,6 +12,7 @@
 #ifndef VERTEX_STAGE
 #include "container.glsl"
 layout(binding = 0) uniform sampler2D inverse_depths;
+layout(binding = 3) uniform sampler2D uncut; // inverse depths before the walls
 #ifdef ANALYTIC
 layout(binding = 1) uniform sampler2D raw_front; // normal in world axes, depth
 layout(binding = 2) uniform sampler2D raw_back;
@@ -19,8 +21,8 @@ layout(std140, binding = 1) uniform Params {
   vec4 params;          // bend, m: where three pixels in a line bend by more, they are not of one surface
 };
 
-vec2 inverse_at(ivec2 at) {
-  return in_picture(at) ? texelFetch(inverse_depths, at, 0).xy : vec2(0.0);
+vec2 uncut_at(ivec2 at) {
+  return in_picture(at) ? texelFetch(uncut, at, 0).xy : vec2(0.0);
 }
 
 // Change from pixel to pixel: central where three belong together, else to the flatter side.
@@ -37,14 +39,14 @@ vec3 normal_of(float w, float w_x, float w_y, vec2 ray, float side) {
 }
 
 void pass(ivec2 at) {
-  vec2 w = inverse_at(at);
+  vec2 w = texelFetch(inverse_depths, at, 0).xy, u = uncut_at(at);
   result_0 = result_1 = vec4(0.0);
   if (w.x <= 0.0) return;
-  vec2 bend = params.x * w * w, ray = ray_of(at);
-  vec2 per_x = change(inverse_at(at - ivec2(1, 0)), w, inverse_at(at + ivec2(1, 0)), bend) * lens.z / (2.0 * lens.x);
-  vec2 per_y = change(inverse_at(at - ivec2(0, 1)), w, inverse_at(at + ivec2(0, 1)), bend) * lens.w / (2.0 * lens.y);
-  vec4 near = vec4(normal_of(w.x, per_x.x, per_y.x, ray, -1.0), 1.0 / w.x);
-  vec4 far = vec4(normal_of(w.y, per_x.y, per_y.y, ray, 1.0), 1.0 / w.y);
+  vec2 bend = params.x * u * u, ray = ray_of(at);
+  vec2 per_x = change(uncut_at(at - ivec2(1, 0)), u, uncut_at(at + ivec2(1, 0)), bend) * lens.z / (2.0 * lens.x);
+  vec2 per_y = change(uncut_at(at - ivec2(0, 1)), u, uncut_at(at + ivec2(0, 1)), bend) * lens.w / (2.0 * lens.y);
+  vec4 near = vec4(normal_of(u.x, per_x.x, per_y.x, ray, -1.0), 1.0 / w.x);
+  vec4 far = vec4(normal_of(u.y, per_x.y, per_y.y, ray, 1.0), 1.0 / w.y);
 #ifdef ANALYTIC
   vec4 raw_near = texelFetch(raw_front, at, 0), raw_far = texelFetch(raw_back, at, 0);
   if (abs(raw_near.w - near.w) < 1e-4 * near.w) near.xyz = raw_near.xyz;
