@@ -5,8 +5,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define CELL_RADII 4.0f  // edge of a cell in particle radii, unless there would be too many
-#define REACH_RADII 1.6f // a lattice of spacing two radii has no point farther than this along an axis, even disordered
+// Edge of a cell (unless there would be too many) and how far a particle's water reaches along an axis, in radii. In a lattice
+// of spacing two radii, even a disordered one, no point is farther than 1.6 from a particle along an axis, and cells of more
+// than twice that have no holes. Small cells need a longer reach.
+static const struct {
+  float cell, reach;
+} grains[] = {[RENDER_OCCUPANCY_COARSE] = {4, 1.6f}, [RENDER_OCCUPANCY_FINE] = {1, 2.2f}};
+
 #define MAX_CELLS (1 << 24)
 
 static bool valid(const float p[3]) {
@@ -47,7 +52,6 @@ static int32_t cell_along(const RenderOccupancy *o, float x, int axis) {
   return c < 0 ? 0 : c >= o->size[axis] ? o->size[axis] - 1 : c;
 }
 
-// Cells are larger than twice the reach, so that a particle touches at most two along each axis.
 static void mark(RenderOccupancy *o, const float p[3], float reach) {
   int32_t from[3], to[3];
   for (int k = 0; k < 3; ++k) {
@@ -64,12 +68,14 @@ static void mark(RenderOccupancy *o, const float p[3], float reach) {
   }
 }
 
-bool render_occupancy_upload(RenderOccupancy *o, const SimFrame *frame, RenderError *error) {
-  const float r = frame->particle_radius, reach = REACH_RADII * (r > 1e-6f && r < RENDER_FARTHEST ? r : 1e-6f);
+bool render_occupancy_upload(RenderOccupancy *o, const SimFrame *frame, RenderOccupancyGrain grain,
+                             RenderError *error) {
+  const float radius = frame->particle_radius, r = radius > 1e-6f && radius < RENDER_FARTHEST ? radius : 1e-6f;
+  const float reach = grains[grain].reach * r;
   float low[3], high[3];
   for (int k = 0; k < 3; ++k) o->size[k] = 0;
   if (!bounds(frame, reach, low, high)) return true;
-  size_grid(o, low, high, reach * (CELL_RADII / REACH_RADII));
+  size_grid(o, low, high, grains[grain].cell * r);
   const size_t words = ((size_t)o->size[0] * (size_t)o->size[1] * (size_t)o->size[2] + 31) / 32;
   if (words > o->capacity) {
     uint32_t *grown = realloc(o->staging, words * sizeof *grown);

@@ -1,4 +1,4 @@
-// Where in space there is water at all: a coarse grid of bits. Maps of depth know where a body of water begins and ends for
+// Where in space there is water at all: a grid of bits. Maps of depth know where a body of water begins and ends for
 // the eye, not whether it is hollow; this does.
 #ifndef LIDO_RENDER_OCCUPANCY_H
 #define LIDO_RENDER_OCCUPANCY_H
@@ -14,9 +14,14 @@ typedef struct RenderOccupancy {
   size_t capacity;   // words
 } RenderOccupancy;
 
-/// From all particles of the frame; what is not finite is left out. A point of the water that lies no farther from a
-/// particle than 1.6 radii along each axis is in a cell that holds water.
-bool render_occupancy_upload(RenderOccupancy *occupancy, const SimFrame *frame, RenderError *error);
+typedef enum RenderOccupancyGrain {
+  RENDER_OCCUPANCY_COARSE, ///< cells of 4 radii; a point no farther than 1.6 radii from a particle along each axis is wet
+  RENDER_OCCUPANCY_FINE    ///< cells of 1 radius; 2.2 radii. Slower to make (30 times the cells) and to walk through
+} RenderOccupancyGrain;
+
+/// From all particles of the frame; what is not finite is left out.
+bool render_occupancy_upload(RenderOccupancy *occupancy, const SimFrame *frame, RenderOccupancyGrain grain,
+                             RenderError *error);
 /// What occupancy.glsl has of it in a std140 block.
 typedef struct RenderOccupancyBlock {
   float grid[4];    // origin, edge of a cell; m

@@ -129,8 +129,10 @@ static bool upload(Refraction *s, RenderPicture *picture, RenderError *error) {
   const RenderRefraction *settings = &picture->settings->refraction;
   const RenderQuadrics *q = &s->quadrics;
   s->submerged = eye_in_water(picture->frame, picture->block.eye);
+  // From within one sees where the air begins, and the edges of large cells there.
+  const RenderOccupancyGrain grain = s->submerged ? RENDER_OCCUPANCY_FINE : RENDER_OCCUPANCY_COARSE;
   return render_quadrics_upload(&s->quadrics, picture->frame, settings, error) &&
-         render_occupancy_upload(&s->occupancy, picture->frame, error) && render_tiles_clear(picture, error) &&
+         render_occupancy_upload(&s->occupancy, picture->frame, grain, error) && render_tiles_clear(picture, error) &&
          render_tiles_mark(picture, &(RenderTileMarks){&q->ellipsoids, q->ellipsoid_count, 4, 1}, error) &&
          render_tiles_mark(picture, &(RenderTileMarks){&q->balls, q->ball_count, 2, 1}, error);
 }

@@ -121,7 +121,7 @@ static void test_walls(void **state) {
 
 // ---- The first air ---------------------------------------------------------------------------------------------------
 
-// Which cubes of an even grid are touched by the cube of 1.6 radii around any particle.
+// Which cubes of an even grid are touched by the cube of 2.2 radii around any particle.
 typedef struct Cells {
   double origin[3], edge; // m
   int size[3];
@@ -141,8 +141,8 @@ static bool touched(const SimFrame *frame, const double low[3], double edge, dou
 }
 
 static Cells cells_create(const SimFrame *frame) {
-  const double r = (double)frame->particle_radius, reach = 1.6 * r;
-  Cells cells = {.edge = 4 * r};
+  const double r = (double)frame->particle_radius, reach = 2.2 * r;
+  Cells cells = {.edge = r};
   for (size_t k = 0; k < 3; ++k) {
     double low = INFINITY, high = -INFINITY;
     for (size_t i = 0; i < (size_t)frame->count; ++i) {
