@@ -16,7 +16,7 @@ typedef struct RenderOccupancy {
 
 typedef enum RenderOccupancyGrain {
   RENDER_OCCUPANCY_COARSE, ///< cells of 4 radii; a point no farther than 1.6 radii from a particle along each axis is wet
-  RENDER_OCCUPANCY_FINE    ///< cells of 1 radius; 2.2 radii. Slower to make (30 times the cells) and to walk through
+  RENDER_OCCUPANCY_FINE    ///< cells of 1 radius; 2.2 radii. 64 times as many: slower to make and to walk through
 } RenderOccupancyGrain;
 
 /// From all particles of the frame; what is not finite is left out.
