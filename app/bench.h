@@ -1,5 +1,5 @@
 // What the parts of `lido bench` share: command_bench.c runs the scene, bench_scaling.c runs it again on other numbers of
-// threads, bench_report.c prints.
+// threads, bench_report.c prints; bench_pictures.c makes a table of pictures of several sizes and numbers of particles.
 #ifndef LIDO_APP_BENCH_H
 #define LIDO_APP_BENCH_H
 
@@ -66,6 +66,9 @@ double bench_median(BenchSeries *series);
 
 /// Fill runs and world_bytes. The scene is run from its start on 1, 2, 4 … threads, up to the number asked for.
 bool bench_scaling(Bench *bench, AppError *error);
+
+/// The table that --sizes and --particles ask for.
+bool bench_pictures(const Options *options, AppError *error);
 
 void bench_print_table(Bench *bench, const SimCounts *counts);
 void bench_print_json(Bench *bench, const SimCounts *counts);

@@ -183,6 +183,7 @@ static bool measure_machine(Bench *bench, AppError *error) {
 }
 
 bool command_bench(const Options *options, AppError *error) {
+  if (options->size_count > 0 || options->particle_counts > 0) return bench_pictures(options, error);
   Bench bench = {0};
   bool ok = open_bench(&bench, options, error);
   for (int i = 0; ok && i < BENCH_WARM_UP + bench.frames && !app_interrupted(); i++) {

@@ -67,6 +67,45 @@ static bool read_size(Options *options, const char *value, char *cause, size_t s
   return true;
 }
 
+// "A,B,C": each value by `read`, which says where it ends, NULL: it is wrong.
+static int read_list(const char *value, void *options,
+                     const char *(*read)(void *options, int index, const char *text)) {
+  for (int count = 0; count < OPTIONS_MOST;) {
+    value = read(options, count++, value);
+    if (!value || !*value) return value ? count : 0;
+    if (*value++ != ',') return 0;
+  }
+  return 0;
+}
+
+static const char *one_size(void *options, int index, const char *text) {
+  long width, height;
+  if (!whole(text, &text, 1, 16384, &width) || *text != 'x' || !whole(text + 1, &text, 1, 16384, &height)) return NULL;
+  int *size = ((Options *)options)->sizes[index];
+  size[0] = (int)width;
+  size[1] = (int)height;
+  return text;
+}
+
+static bool read_sizes(Options *options, const char *value, char *cause, size_t size) {
+  options->size_count = read_list(value, options, one_size);
+  return options->size_count > 0 ||
+         because(cause, size, "must be up to 8 of WIDTHxHEIGHT with commas between, each from 1 to 16384 pixels");
+}
+
+static const char *one_count(void *options, int index, const char *text) {
+  long count;
+  if (!whole(text, &text, 1, 100000000, &count)) return NULL;
+  ((Options *)options)->particles[index] = (int32_t)count;
+  return text;
+}
+
+static bool read_particles(Options *options, const char *value, char *cause, size_t size) {
+  options->particle_counts = read_list(value, options, one_count);
+  return options->particle_counts > 0 ||
+         because(cause, size, "must be up to 8 whole numbers in [1, 100000000] with commas between");
+}
+
 static bool read_frames(Options *options, const char *value, char *cause, size_t size) {
   const long most = 10000000;
   const char *rest = value;
@@ -194,6 +233,8 @@ static const Option option_table[] = {
   {"output",    'o', "PATTERN",     RENDER | SIMULATE, read_output,    "where the frames go, like out/f_%05d.png"},
   {"style",     0,   "NAME",        DRAWS | CHECK,     read_style,     "how the water is drawn (see lido list)"},
   {"size",      0,   "WxH",         DRAWS,             read_size,      "pixels of a picture, default 1280x720"},
+  {"sizes",     0,   "WxH,...",     BENCH,             read_sizes,     "a table: time of a picture, for each size …"},
+  {"particles", 0,   "N,...",       BENCH,             read_particles, "… and each number of particles (about)"},
   {"frames",    0,   "N|A:B",       RUNS,              read_frames,    "the first N frames, or A up to B, without B"},
   {"fps",       0,   "F",           RUNS,              read_fps,       "frames per simulated second, default 60"},
   {"context",   0,   "NAME",        DRAWS,             read_context,   "where OpenGL is from: auto, glfw, egl, osmesa"},

@@ -9,6 +9,8 @@
 #include "app/app.h"
 #include "app/context.h"
 
+enum { OPTIONS_MOST = 8 }; ///< values in a list
+
 /// What the command line says. Strings point into argv.
 typedef struct Options {
   int command;                 ///< CommandIndex of commands.h
@@ -16,6 +18,10 @@ typedef struct Options {
   const char *output;          ///< -o: pattern, film or "-"
   const char *style;           ///< --style, or NULL: the scene's
   int width, height;           ///< --size, default 1280x720
+  int sizes[OPTIONS_MOST][2];  ///< (size_count) --sizes
+  int size_count;
+  int32_t particles[OPTIONS_MOST]; ///< (particle_counts) --particles
+  int particle_counts;
   int first_frame, last_frame; ///< --frames N: 0 … N − 1, A:B: A … B − 1; last_frame −1: to the end of the scene
   double fps;                  ///< --fps, default 60: a frame stands for 1/fps simulated seconds
   ContextKind context;         ///< --context, default CONTEXT_AUTO

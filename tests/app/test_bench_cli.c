@@ -18,18 +18,22 @@ static double number(const cJSON *object, const char *name) {
   return item->valuedouble;
 }
 
-static cJSON *run_bench(const char *folder, const char *threads) {
-  const char *scene = in(folder, "scene.json"), *output = in(folder, "bench.json");
-  file_put_text(scene, SMALL_SCENE SMALL_END);
-  LidoRun run = {.stdout_to = output};
-  LIDO(&run, "bench", "--json", "--frames", "3", "--threads", threads, scene);
-  assert_int_equal(run.code, 0);
+static cJSON *read_report(const char *output) {
   size_t size = 0;
   char *text = (char *)file_get(output, &size);
   cJSON *report = cJSON_ParseWithLength(text, size);
   if (!report) fail_msg("not JSON: %.*s", (int)size, text);
   free(text);
   return report;
+}
+
+static cJSON *run_bench(const char *folder, const char *threads) {
+  const char *scene = in(folder, "scene.json"), *output = in(folder, "bench.json");
+  file_put_text(scene, SMALL_SCENE SMALL_END);
+  LidoRun run = {.stdout_to = output};
+  LIDO(&run, "bench", "--json", "--frames", "3", "--threads", threads, scene);
+  assert_int_equal(run.code, 0);
+  return read_report(output);
 }
 
 static void figures_fit_each_other(void **state) {
@@ -63,7 +67,37 @@ static void figures_fit_each_other(void **state) {
   folder_remove(folder);
 }
 
+// One row for each size, with each number of particles, about as many as asked for.
+static void table_of_pictures(void **state) {
+  (void)state;
+  char folder[256];
+  folder_make(folder);
+  const char *scene = in(folder, "scene.json"), *output = in(folder, "bench.json");
+  file_put_text(scene, SMALL_SCENE SMALL_END);
+  LidoRun run = {.stdout_to = output};
+  LIDO(&run, "bench", "--json", "--style", "points", "--particles", "500,4000", "--sizes", "40x30,64x64", "--frames",
+       "1:3", scene);
+  assert_int_equal(run.code, 0);
+  cJSON *report = read_report(output);
+  const cJSON *times = cJSON_GetObjectItem(report, "times");
+  assert_int_equal(cJSON_GetArraySize(times), 4);
+  assert_true(number(report, "pictures") == 2);
+  for (int k = 0; k < 4; k++) {
+    const cJSON *cell = cJSON_GetArrayItem(times, k);
+    const double wanted = k % 2 ? 4000 : 500, particles = number(cell, "particles");
+    assert_true(number(cell, "width") == (k < 2 ? 40 : 64) && number(cell, "height") == (k < 2 ? 30 : 64));
+    assert_true(particles > 0.7 * wanted && particles < 1.4 * wanted);
+    assert_true(number(cell, "median_ms") >= number(cell, "least_ms") && number(cell, "least_ms") > 0);
+  }
+  cJSON_Delete(report);
+  LIDO(&run, "bench", "--json", "--style", "points", "--sizes", "40x30", "--frames", "1", scene);
+  report = read_report(output);
+  assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(report, "times")), 1);
+  cJSON_Delete(report);
+  folder_remove(folder);
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(figures_fit_each_other)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(figures_fit_each_other), cmocka_unit_test(table_of_pictures)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
