@@ -1,10 +1,8 @@
 #include "app/particle_file.h"
 
-#include <errno.h>
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 #include "app/output.h"
 #include "app/particle_parse.h"
@@ -72,34 +70,9 @@ static uint32_t *order_by_id(const uint32_t *id, int32_t count) {
 
 // ---- Reading ---------------------------------------------------------------------------------------------------------------
 
-// The whole file in memory, with a 0 behind it. NULL and *error.
-static uint8_t *load(const char *path, size_t *size, AppError *error) {
-  *size = 0;
-  FILE *stream = fopen(path, "rb");
-  struct stat status;
-  uint8_t *data = NULL;
-  if (!stream || fstat(fileno(stream), &status) != 0) {
-    app_fail(error, APP_BAD_INPUT, "%s: cannot be read: %s", path, strerror(errno));
-  } else if (!S_ISREG(status.st_mode)) {
-    app_fail(error, APP_BAD_INPUT, "%s: cannot be read: it is not a regular file", path);
-  } else if (!(data = malloc((size_t)status.st_size + 1))) {
-    app_fail(error, APP_FAILED, "%s: out of memory", path);
-  } else {
-    *size = fread(data, 1, (size_t)status.st_size, stream);
-    data[*size] = 0;
-    if (ferror(stream)) {
-      app_fail(error, APP_BAD_INPUT, "%s: cannot be read: %s", path, strerror(errno));
-      free(data);
-      data = NULL;
-    }
-  }
-  if (stream) fclose(stream);
-  return data;
-}
-
-static bool starts_with(const ParticleReader *reader, const char *text) {
+static bool starts_with(ParticleReader *reader, const char *text) {
   size_t length = strlen(text);
-  return reader->size >= length && memcmp(reader->data, text, length) == 0;
+  return parse_has(reader, length) && memcmp(reader->data, text, length) == 0;
 }
 
 static bool read_any(ParticleReader *reader, ParticleFile *file) {
@@ -131,16 +104,23 @@ static bool drop_foreign(const ParticleReader *reader, ParticleFile *file) {
   return true;
 }
 
-bool particle_file_read(const char *path, ParticleFile *file, AppError *error) {
+static bool read_file(ParticleReader *reader, ParticleFile *file) {
   *file = (ParticleFile){0};
-  ParticleReader reader = {.path = path, .error = error};
-  uint8_t *data = load(path, &reader.size, error);
-  if (!data) return false;
-  reader.data = data;
-  bool fine = read_any(&reader, file) && drop_foreign(&reader, file);
-  free(data);
+  bool fine = parse_open(reader) && read_any(reader, file) && drop_foreign(reader, file);
+  // Whatever the parser makes of the end, this is the cause of it.
+  if (reader->failed)
+    fine = app_fail(reader->error, APP_BAD_INPUT, "%s: cannot be read: %s", reader->path, strerror(reader->failed));
+  parse_close(reader);
   if (!fine) particle_file_free(file);
   return fine;
+}
+
+bool particle_file_read(const char *path, ParticleFile *file, AppError *error) {
+  return read_file(&(ParticleReader){.path = path, .error = error, .descriptor = -1}, file);
+}
+
+bool particle_file_read_to_draw(const char *path, ParticleFile *file, AppError *error) {
+  return read_file(&(ParticleReader){.path = path, .error = error, .descriptor = -1, .to_draw = true}, file);
 }
 
 // ---- Writing ---------------------------------------------------------------------------------------------------------------

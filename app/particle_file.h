@@ -11,7 +11,7 @@
 // that are not 0 or 1, mean something else in that program and are not used.
 //
 // Files are untrusted: whatever they hold, the answer is a particle file or one line that names file, line or byte, and
-// cause. The memory used is a small multiple of the file's size.
+// cause. The memory used is that of the arrays, for which the file has to be large enough, and a few megabytes.
 #ifndef LIDO_APP_PARTICLE_FILE_H
 #define LIDO_APP_PARTICLE_FILE_H
 
@@ -45,6 +45,8 @@ bool particle_file_named(const char *path);
 
 /// False and *error (APP_BAD_INPUT; APP_FAILED when memory runs out); the file is then empty.
 bool particle_file_read(const char *path, ParticleFile *file, AppError *error);
+/// The same without ids and densities, which no picture needs: they are checked, but not kept.
+bool particle_file_read_to_draw(const char *path, ParticleFile *file, AppError *error);
 void particle_file_free(ParticleFile *file);
 
 /// The same as the simulator takes it. Pointers into the file.
@@ -56,7 +58,7 @@ bool particle_file_write(const char *path, const SimFrame *frame, AppError *erro
 // ---- One format each (particle_vtk.c, particle_ply.c) --------------------------------------------------------------------
 
 struct ParticleReader;
-/// Read from memory into an empty file.
+/// Read into an empty file.
 bool particle_vtk_read(struct ParticleReader *reader, ParticleFile *file);
 bool particle_ply_read(struct ParticleReader *reader, ParticleFile *file);
 /// Write to a stream, particles in the given order: order[k] is the place in the frame of the k-th one.

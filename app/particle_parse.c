@@ -13,8 +13,8 @@ bool parse_fail(ParticleReader *reader, size_t place, const char *format, ...) {
   vsnprintf(cause, sizeof cause, format, arguments);
   va_end(arguments);
   if (reader->by_byte) return app_fail(reader->error, APP_BAD_INPUT, "%s: byte %zu: %s", reader->path, place, cause);
-  size_t line = 1;
-  for (size_t i = 0; i < place && i < reader->size; i++) line += reader->data[i] == '\n';
+  size_t line = 1 + reader->lines;
+  for (size_t i = reader->dropped; i < place && i < reader->size; i++) line += reader->data[i] == '\n';
   return app_fail(reader->error, APP_BAD_INPUT, "%s: line %zu: %s", reader->path, line, cause);
 }
 
@@ -29,22 +29,22 @@ static bool is_space(uint8_t c) {
 }
 
 ParseToken parse_token_on_line(ParticleReader *reader) {
-  while (reader->at < reader->size && is_blank(reader->data[reader->at])) reader->at++;
+  while (parse_has(reader, 1) && is_blank(reader->data[reader->at])) reader->at++;
   size_t start = reader->at;
-  while (reader->at < reader->size && !is_space(reader->data[reader->at])) reader->at++;
+  while (parse_has(reader, 1) && !is_space(reader->data[reader->at])) reader->at++;
   return (ParseToken){(const char *)reader->data + start, reader->at - start, start};
 }
 
 ParseToken parse_token(ParticleReader *reader) {
-  while (reader->at < reader->size && is_space(reader->data[reader->at])) reader->at++;
+  while (parse_has(reader, 1) && is_space(reader->data[reader->at])) reader->at++;
   return parse_token_on_line(reader);
 }
 
 ParseToken parse_line(ParticleReader *reader) {
   size_t start = reader->at;
-  while (reader->at < reader->size && reader->data[reader->at] != '\n') reader->at++;
+  while (parse_has(reader, 1) && reader->data[reader->at] != '\n') reader->at++;
   size_t length = reader->at - start;
-  if (reader->at < reader->size) reader->at++;
+  if (parse_has(reader, 1)) reader->at++;
   if (length > 0 && reader->data[start + length - 1] == '\r') length--;
   return (ParseToken){(const char *)reader->data + start, length, start};
 }
@@ -202,6 +202,7 @@ bool parse_begin_field(ParticleReader *reader, ParticleFile *file, ParticleField
   size_t count = (size_t)file->count + 1;
   float **values = float_field(file, field);
   bool fine = true;
+  if (reader->to_draw && (field == FIELD_ID || field == FIELD_DENSITY)) return true;
   if (values && !*values) fine = (*values = calloc(count * (size_t)field_components(field), sizeof **values)) != NULL;
   if (field == FIELD_CLASS && !file->particle_class) fine = (file->particle_class = calloc(count, 1)) != NULL;
   if (field == FIELD_ID && !file->id) fine = (file->id = calloc(count, sizeof *file->id)) != NULL;
@@ -220,10 +221,9 @@ static float srgb_to_linear(double value) {
 bool parse_store(ParticleReader *reader, ParticleFile *file, ParticleField field, uint64_t particle, int component,
                  double value, ParseType type, size_t place) {
   if (field == FIELD_ID) {
-    if (value >= 0 && value <= UINT32_MAX && value == floor(value))
-      file->id[particle] = (uint32_t)value;
-    else
-      reader->id_refused = true;
+    bool fine = value >= 0 && value <= UINT32_MAX && value == floor(value);
+    if (!fine) reader->id_refused = true;
+    if (fine && file->id) file->id[particle] = (uint32_t)value;
     return true;
   }
   if (field == FIELD_CLASS) {
@@ -239,7 +239,8 @@ bool parse_store(ParticleReader *reader, ParticleFile *file, ParticleField field
     return parse_fail(reader, place, "radius of particle %" PRIu64 " must be above 0, got %g", particle, value);
   if (field == FIELD_COLOUR && type == PARSE_UINT8) value = srgb_to_linear(value / 255);
   if (field == FIELD_COLOUR) value = value < 0 ? 0 : value > 1 ? 1 : value;
-  (*float_field(file, field))[particle * (uint64_t)field_components(field) + (uint64_t)component] = (float)value;
+  float *values = *float_field(file, field);
+  if (values) values[particle * (uint64_t)field_components(field) + (uint64_t)component] = (float)value;
   return true;
 }
 

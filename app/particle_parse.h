@@ -8,18 +8,40 @@
 #include "app/app.h"
 #include "app/particle_file.h"
 
-/// A whole file in memory and where we are in it.
+/// A file and where we are in it.
 typedef struct ParticleReader {
-  const char *path;    ///< for messages
-  const uint8_t *data; ///< (size) and one more byte, 0
+  const char *path; ///< for messages
+  /// (size) and one more byte, 0. What parse_has has been asked for and the megabyte behind the cursor are the file's
+  /// bytes; the rest is 0.
+  const uint8_t *data;
   size_t size, at;
   bool binary;        ///< numbers are bytes, not text
   bool by_byte;       ///< past the first binary block: errors name the byte instead of the line
   bool big_endian;    ///< of binary numbers
+  bool to_draw;       ///< check ids and densities, but do not keep them
   bool id_refused;    ///< a value was no id: drop them at the end
   bool class_refused; ///< a value was no class: drop them at the end
   AppError *error;
+
+  // The window of the file that is in memory (particle_bytes.c)
+  int descriptor; ///< −1: none
+  int failed;     ///< errno of a read that went wrong: the file then ends before it
+  uint8_t *bytes; ///< `data`, writable
+  size_t room;    ///< bytes set aside
+  size_t filled;  ///< bytes before this have been read or skipped
+  size_t dropped; ///< bytes before this have been given back …
+  size_t lines;   ///< … with so many ends of lines, in the text at the file's beginning
 } ParticleReader;
+
+/// Open reader->path. False and the error when it cannot be read or is not a regular file; parse_close in any case.
+bool parse_open(ParticleReader *reader);
+void parse_close(ParticleReader *reader);
+/// Read on until the next `bytes` (at most 64) from the cursor are in memory. False: the file ends before them.
+bool parse_fill(ParticleReader *reader, size_t bytes);
+/// The same, if they are not there yet. To be asked before any byte is looked at.
+static inline bool parse_has(ParticleReader *reader, size_t bytes) {
+  return reader->at + bytes <= reader->filled || parse_fill(reader, bytes);
+}
 
 /// Fill *reader->error with "FILE: line 3: cause" or "FILE: byte 120: cause" and return false.
 #if defined(__GNUC__)
@@ -88,7 +110,7 @@ typedef enum ParticleField {
 /// The field that an array of this name and number of components is.
 ParticleField parse_field(ParseToken name, uint64_t components);
 
-/// Memory for a field of file->count particles. False and the error when memory runs out.
+/// Memory for a field of file->count particles, unless it is not to be kept. False and the error when memory runs out.
 bool parse_begin_field(ParticleReader *reader, ParticleFile *file, ParticleField field);
 
 /// Put one value, read at `place`, into its field. False and the error when it may not be there (not finite …).

@@ -116,7 +116,7 @@ static bool read_element(ParticleReader *reader, PlyHeader *header) {
     return parse_fail(reader, name.place, "there are more than %d elements", MAX_ELEMENTS);
   PlyElement *element = &header->elements[header->element_count++];
   *element = (PlyElement){.vertex = parse_is(name, "vertex"), .first = header->property_count};
-  return parse_count(reader, "element", element->vertex ? SIM_MAX_PARTICLES : UINT64_MAX / 2, &element->count);
+  return parse_count(reader, "element", element->vertex ? SIM_MAX_SET_PARTICLES : UINT64_MAX / 2, &element->count);
 }
 
 static bool read_property(ParticleReader *reader, PlyHeader *header) {
@@ -169,7 +169,7 @@ static bool read_header(ParticleReader *reader, ParticleFile *file, PlyHeader *h
     else if (parse_is(keyword, "property"))
       fine = read_property(reader, header);
     else if (parse_is(keyword, "comment")) {
-      if (reader->at < reader->size && reader->data[reader->at] == ' ') reader->at++;
+      if (parse_has(reader, 1) && reader->data[reader->at] == ' ') reader->at++;
       ParseToken comment = parse_line(reader);
       parse_title(file, comment);
       continue;
@@ -191,7 +191,7 @@ static bool read_header(ParticleReader *reader, ParticleFile *file, PlyHeader *h
 static bool read_value(ParticleReader *reader, ParseType type, double *value) {
   if (!reader->binary) return parse_number(reader, "element", value);
   size_t size = parse_type_size(type);
-  if (size > reader->size - reader->at) return parse_fail(reader, reader->at, "the file is cut short here");
+  if (!parse_has(reader, size)) return parse_fail(reader, reader->at, "the file is cut short here");
   *value = parse_binary(reader->data + reader->at, type, reader->big_endian);
   reader->at += size;
   return true;

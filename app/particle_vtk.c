@@ -120,14 +120,13 @@ typedef struct VtkArray {
 // the first two bits.
 static bool skip_strings(ParticleReader *reader, uint64_t count) {
   for (uint64_t i = 0; i < count; i++) {
-    if (reader->at >= reader->size) return parse_fail(reader, reader->at, "the file ends in an array of strings");
+    if (!parse_has(reader, 1)) return parse_fail(reader, reader->at, "the file ends in an array of strings");
     if (!reader->binary) {
       parse_line(reader);
       continue;
     }
     size_t bytes = (size_t)1 << (3 - (reader->data[reader->at] >> 6));
-    if (bytes > reader->size - reader->at)
-      return parse_fail(reader, reader->at, "the file ends in an array of strings");
+    if (!parse_has(reader, bytes)) return parse_fail(reader, reader->at, "the file ends in an array of strings");
     uint64_t length = reader->data[reader->at] & 0x3f;
     for (size_t k = 1; k < bytes; k++) length = length << 8 | reader->data[reader->at + k];
     reader->at += bytes;
@@ -146,6 +145,7 @@ static bool read_values(ParticleReader *reader, ParticleFile *file, const VtkArr
       size_t place = reader->at;
       double value;
       if (reader->binary) {
+        if (!parse_has(reader, size)) return parse_fail(reader, place, "the file is cut short here");
         value = parse_binary(reader->data + place, type, true);
         reader->at += size;
       } else {
@@ -206,7 +206,7 @@ static bool read_points(ParticleReader *reader, ParticleFile *file, VtkState *st
   size_t place = reader->at;
   uint64_t count;
   if (state->has_points) return parse_fail(reader, place, "POINTS is there twice");
-  if (!parse_count(reader, "POINTS", SIM_MAX_PARTICLES, &count)) return false;
+  if (!parse_count(reader, "POINTS", SIM_MAX_SET_PARTICLES, &count)) return false;
   VtkArray array = {"POINTS", FIELD_POSITION, count, 3, read_type(reader)};
   if (!array.type) return false;
   if (array.type == TYPE_BIT || array.type == TYPE_STRING)
@@ -246,7 +246,7 @@ static bool skip_cell_types(ParticleReader *reader, ParticleFile *file) {
 // METADATA is text that ends with an empty line.
 static bool skip_metadata(ParticleReader *reader) {
   parse_line(reader);
-  while (reader->at < reader->size && parse_line(reader).length > 0) continue;
+  while (parse_has(reader, 1) && parse_line(reader).length > 0) continue;
   return true;
 }
 

@@ -139,6 +139,18 @@ static RenderRefraction refraction_settings(const SceneRefraction *scene) {
                             .surface_only = scene->surface_only};
 }
 
+static RenderRaycast raycast_settings(const SceneRaycast *scene) {
+  return (RenderRaycast){.iso = scene->iso,
+                         .support = scene->support,
+                         .normals = (RenderNormals)scene->normals,
+                         .normal_reach = scene->normal_reach,
+                         .blend_d = scene->blend_d,
+                         .blend_k = scene->blend_k,
+                         .blend_weight = scene->blend_weight,
+                         .filter_reach = scene->filter_reach,
+                         .filter_angle = scene->filter_angle};
+}
+
 RenderSettings scene_render_settings(const Scene *scene) {
   const SceneEnvironment *environment = &scene->environment;
   RenderSettings settings = render_default_settings();
@@ -157,10 +169,13 @@ RenderSettings scene_render_settings(const Scene *scene) {
   memcpy(settings.floor_colour[1], environment->checker_odd, sizeof settings.floor_colour[1]);
   settings.container_visible = scene->container.visible;
   memcpy(settings.absorption, scene->render.absorption, sizeof settings.absorption);
+  memcpy(settings.scattering, scene->render.scattering, sizeof settings.scattering);
+  memcpy(settings.reflectance, scene->render.reflectance, sizeof settings.reflectance);
   settings.refractive_index = scene->render.refractive_index;
   settings.tone_map = (RenderToneMap)scene->render.tone_map;
   settings.exposure = scene->render.exposure;
   settings.points.scale = scene->render.points.scale;
+  settings.raycast = raycast_settings(&scene->render.raycast);
   settings.refraction = refraction_settings(&scene->render.refraction);
   return settings;
 }

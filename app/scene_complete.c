@@ -333,12 +333,35 @@ static void place_camera(Scene *scene) {
   }
 }
 
+// ---- Liquid ---------------------------------------------------------------------------------------------------------
+
+/// What the scene does not say of its liquid is that of its material; the key's choices are the renderer's, in their order.
+static void take_material(const Check *check) {
+  SceneRender *render = &check->scene->render;
+  const RenderMaterial *material = render_material(render->material);
+  const struct {
+    const char *key;
+    float *value;
+    const float *of_material;
+    size_t size;
+  } keys[] = {
+      {"absorption", render->absorption, material->absorption, sizeof material->absorption},
+      {"scattering", render->scattering, material->scattering, sizeof material->scattering},
+      {"reflectance", render->reflectance, material->reflectance, sizeof material->reflectance},
+      {"refractive_index", &render->refractive_index, &material->refractive_index, sizeof(float)},
+  };
+  const cJSON *given = cJSON_GetObjectItemCaseSensitive(check->root, "render");
+  for (size_t k = 0; k < sizeof keys / sizeof *keys; k++)
+    if (!cJSON_HasObjectItem(given, keys[k].key)) memcpy(keys[k].value, keys[k].of_material, keys[k].size);
+}
+
 bool scene_complete(const SceneSource *source, const cJSON *root, Scene *scene) {
   Check check = {source, root, scene};
   if (!check_container(&check) || !check_fluid(&check) || !check_sinks(&check) || !check_obstacles(&check))
     return false;
   if (!scene_resolve_names(source, root, scene)) return false;
   place_camera(scene);
+  take_material(&check);
   if (distance(scene->camera.eye, scene->camera.target) <= 0)
     return fail_at(&check, "camera", "eye and target must not be the same point");
   for (int i = 0; i < scene->events_count; i++)

@@ -281,11 +281,18 @@
     "none: pictures hold 255 × the linear value, for measurements.") \
   F(S, NUMBER,    exposure,        "",         "[0.001, 1000]",       "1", \
     "Factor before the tone curve.") \
+  F(S, CHOICE,    material,        "", "water | milk | juice | oil | cola | ink | metal | gold | copper", "\"water\"", \
+    "What the liquid is: it brings the next four values, where they are not given.") \
   F(S, VECTOR,    absorption,      "1/m",      "[0, 10000]",       "[3.2, 0.68, 0.46]", \
     "How strongly the water takes away red, green and blue light.") \
+  F(S, VECTOR,    scattering,      "1/m",      "[0, 10000]",       "[0.14, 0.34, 0.36]", \
+    "How strongly it turns light aside (styles points and raycast).") \
+  F(S, VECTOR,    reflectance,     "linear",   "[0, 1]",           "[0, 0, 0]", \
+    "Of a metal at normal incidence; 0: it lets light through (style raycast).") \
   F(S, NUMBER,    refractive_index, "",        "[1, 3]",           "1.333", \
     "Of the water.") \
   O(S, SceneRefraction, refraction, "The style refraction (Imai, Kanamori, Mitani 2016).") \
+  O(S, SceneRaycast, raycast,      "The style raycast (Xiao, Zhang, Yang 2017).") \
   O(S, ScenePoints, points,        "The style points.")
 
 #define SCENE_REFRACTION(F, O, L, V, S) \
@@ -311,6 +318,26 @@
     "Splashes have depth maps of their own; off: one surface for all, as in Imai 2014.") \
   F(S, SWITCH,    surface_only,    "",         "",                 "true", \
     "Draw only the particles near the surface; off: all, which looks the same.")
+
+#define SCENE_RAYCAST(F, O, L, V, S) \
+  F(S, NUMBER,    iso,             "",         "[0.01, 0.99]",     "0.25", \
+    "Value of the density field at the surface, in that of water at rest; the paper's 10 to 30 are 0.125 to 0.375.") \
+  F(S, NUMBER,    support,         "radii",    "[2, 8]",           "4", \
+    "Of the field's kernel (Eq. 1).") \
+  F(S, CHOICE,    normals,         "",         "blend | gradient | pca", "\"blend\"", \
+    "blend: PCA (Eqs. 3, 4) as far as it agrees with the gradient (Eq. 2), by Eqs. 5 and 6; or one of them alone.") \
+  F(S, NUMBER,    normal_reach,    "radii",    "[2, 12]",          "6", \
+    "R of Eqs. 2 to 4; the paper's 3 spacings are 6 radii.") \
+  F(S, NUMBER,    blend_d,         "",         "[0, 1000]",        "10", \
+    "d of Eq. 6.") \
+  F(S, NUMBER,    blend_k,         "",         "[-1, 1]",          "0.998", \
+    "k of Eq. 6.") \
+  F(S, NUMBER,    blend_weight,    "",         "[-1, 1]",          "-1", \
+    "w of Eq. 5 as one number for all; negative: by Eq. 6.") \
+  F(S, NUMBER,    filter_reach,    "radii",    "[0, 20]",          "3", \
+    "Half of the window of the bilateral filter of normals; 0: no filter.") \
+  F(S, NUMBER,    filter_angle,    "",         "[0.001, 2]",       "0.2", \
+    "Standard deviation of the normals in it, as the length of their difference.")
 
 #define SCENE_POINTS(F, O, L, V, S) \
   F(S, NUMBER,    scale,           "radii",    "[0.1, 5]",         "1.25", \
@@ -403,6 +430,7 @@
   T(SceneEnvironment, SCENE_ENVIRONMENT) \
   T(SceneRefraction, SCENE_REFRACTION) \
   T(ScenePoints, SCENE_POINTS) \
+  T(SceneRaycast, SCENE_RAYCAST) \
   T(SceneRender, SCENE_RENDER) \
   T(ScenePush, SCENE_PUSH) \
   T(ScenePour, SCENE_POUR) \

@@ -32,6 +32,7 @@ struct Source {
   int64_t *numbers; // of the files that are wanted
   int64_t number_count, next;
   ParticleFile file;
+  int64_t file_number;   // of `file`, −1: none
   float particle_radius; // m, where a file does not tell it
 };
 
@@ -97,22 +98,30 @@ static SourceStep next_of_scene(Source *source, AppError *error) {
 
 // ---- Particle files ------------------------------------------------------------------------------------------------------------
 
-static bool read_numbered(const Source *source, int64_t number, ParticleFile *file, AppError *error) {
+static void drop_file(Source *source) {
+  particle_file_free(&source->file);
+  source->file_number = -1;
+}
+
+// Make source->file the file of this number.
+static bool read_numbered(Source *source, int64_t number, AppError *error) {
+  if (source->file_number == number) return true;
+  drop_file(source);
   char *path = pattern_expand(&source->pattern, number);
   if (!path) return app_fail(error, APP_FAILED, "out of memory");
-  bool read = particle_file_read(path, file, error);
+  bool read = particle_file_read_to_draw(path, &source->file, error);
   free(path);
+  if (read) source->file_number = number;
   return read;
 }
 
 // The first file of the whole series that holds enough particles to go by, or the first of all.
-static bool read_reference(const Source *source, ParticleFile *file, AppError *error) {
+static bool read_reference(Source *source, AppError *error) {
   for (int64_t i = 0; i < source->number_count; i++) {
-    if (!read_numbered(source, source->numbers[i], file, error)) return false;
-    if (file->count >= 2) return true;
-    particle_file_free(file);
+    if (!read_numbered(source, source->numbers[i], error)) return false;
+    if (source->file.count >= 2) return true;
   }
-  return read_numbered(source, source->numbers[0], file, error);
+  return read_numbered(source, source->numbers[0], error);
 }
 
 // The box around all particles and their radii. False and *error when it lies too far away.
@@ -185,13 +194,11 @@ static bool list_files(Source *source, AppError *error) {
 
 static bool open_files(Source *source, AppError *error) {
   if (!list_files(source, error)) return false;
-  ParticleFile reference;
-  if (!read_reference(source, &reference, error)) return false;
-  source->particle_radius = reference.particle_radius > 0 ? reference.particle_radius
-                                                          : sim_estimate_radius(reference.position, reference.count);
-  bool made = make_scene(source, &reference, error);
-  particle_file_free(&reference);
-  if (!made) return false;
+  if (!read_reference(source, error)) return false;
+  const ParticleFile *file = &source->file;
+  source->particle_radius =
+      file->particle_radius > 0 ? file->particle_radius : sim_estimate_radius(file->position, file->count);
+  if (!make_scene(source, file, error)) return false;
   select_numbers(source);
   return source->number_count > 0 ||
          app_fail(error, APP_BAD_INPUT, "%s: no file of this series is in the range of --frames",
@@ -200,17 +207,32 @@ static bool open_files(Source *source, AppError *error) {
 
 static SourceStep next_of_files(Source *source, AppError *error) {
   if (source->next >= source->number_count || app_interrupted()) return SOURCE_END;
-  particle_file_free(&source->file);
   source->number = source->numbers[source->next++];
-  return read_numbered(source, source->number, &source->file, error) ? SOURCE_FRAME : SOURCE_FAILED;
+  return read_numbered(source, source->number, error) ? SOURCE_FRAME : SOURCE_FAILED;
 }
 
-static const SimFrame *frame_of_file(Source *source, unsigned needs, SimError *error) {
+static const SimFrame *frame_of_file(Source *source, unsigned needs, AppError *error) {
+  if (!read_numbered(source, source->number, error)) return NULL;
   SimParticleSet set = particle_file_set(&source->file);
   set.index = source->number;
   if (set.time <= 0) set.time = (double)source->number / source->options->fps;
   if (set.particle_radius <= 0) set.particle_radius = source->particle_radius;
-  return sim_frame_from_particles(&set, needs, source->options->threads, source->buffer, error);
+  // Spray is all that a picture shows of densities and velocities; it takes both.
+  if (!set.velocity) needs &= ~(unsigned)SIM_NEED_DENSITY;
+  if (!(needs & SIM_NEED_DENSITY)) set.velocity = NULL;
+  SimError cause;
+  const SimFrame *frame = sim_frame_from_particles(&set, needs, source->options->threads, source->buffer, &cause);
+  // The frame holds all of it; a large file is not kept beside it while it is drawn.
+  drop_file(source);
+  if (!frame) app_fail(error, APP_FAILED, "frame %" PRId64 ": %s", source->number, cause.message);
+  return frame;
+}
+
+static const SimFrame *frame_of_scene(Source *source, unsigned needs, AppError *error) {
+  SimError cause;
+  const SimFrame *frame = sim_world_frame(source->world, needs, source->buffer, &cause);
+  if (!frame) app_fail(error, APP_FAILED, "frame %" PRId64 ": %s", source->number, cause.message);
+  return frame;
 }
 
 // ---- Both ----------------------------------------------------------------------------------------------------------------------
@@ -224,7 +246,7 @@ Source *source_open(const Options *options, AppError *error) {
     return NULL;
   }
   source->options = options;
-  source->number = -1;
+  source->number = source->file_number = -1;
   bool opened = particle_file_named(options->source) ? open_files(source, error) : open_scene(source, error);
   if (opened) return source;
   source_close(source);
@@ -256,13 +278,8 @@ SourceStep source_next(Source *source, AppError *error) {
 }
 
 const SimFrame *source_frame(Source *source, unsigned needs, AppError *error) {
-  SimError sim_error;
-  const SimFrame *frame = source->world ? sim_world_frame(source->world, needs, source->buffer, &sim_error)
-                                        : frame_of_file(source, needs, &sim_error);
-  if (!frame) {
-    app_fail(error, APP_FAILED, "frame %" PRId64 ": %s", source->number, sim_error.message);
-    return NULL;
-  }
+  const SimFrame *frame = source->world ? frame_of_scene(source, needs, error) : frame_of_file(source, needs, error);
+  if (!frame) return NULL;
   source->frame = *frame;
   source->frame.index = source->number;
   return &source->frame;

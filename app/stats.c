@@ -86,8 +86,9 @@ void stats_frame(Stats *stats, const SimFrame *frame, SimWorld *world, Render *r
   if (render) {
     put_passes(file, render);
     put_figures(file, render);
+    fprintf(file, ", \"buffer_bytes\": %zu", render_buffer_bytes());
   } else {
-    fputs(", \"pass_ms\": null, \"figures\": null", file);
+    fputs(", \"pass_ms\": null, \"figures\": null, \"buffer_bytes\": null", file);
   }
   fputs("}\n", file);
 }

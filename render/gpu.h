@@ -27,6 +27,8 @@ typedef struct Gpu {
   unsigned vertex_array; // empty: shaders fetch their vertices themselves
   unsigned params;       // uniform buffer of the draw at hand
   bool software;         // drawn by the processor: Mesa's llvmpipe or softpipe
+  size_t block_limit;    // bytes that a shader storage block may hold
+  size_t block_start;    // a part of a buffer that is bound as a block begins at a multiple of this
   int32_t error_count;   // errors and warnings reported by the driver
   char description[256]; // vendor / renderer / version
   char last_error[256];  // the driver's words for the last of them
@@ -57,6 +59,8 @@ typedef enum GpuFormat {
   GPU_RGBA32F,
   GPU_RG32F,
   GPU_R32F,
+  GPU_RGBA32UI, // of bits: shaders fetch its texels, nothing filters or reads them
+  GPU_R32I,     // of views of buffers only
   GPU_DEPTH32F,
   GPU_FORMAT_COUNT
 } GpuFormat;
@@ -97,6 +101,7 @@ typedef struct GpuTarget {
 bool gpu_target_create(GpuTarget *target, const GpuTargetDesc *desc, RenderError *error);
 void gpu_target_destroy(GpuTarget *target);
 void gpu_clear_colour(const GpuTarget *target, int32_t index, const float rgba[4]);
+void gpu_clear_bits(const GpuTarget *target, int32_t index);
 typedef enum GpuDepthClear { GPU_FARTHEST = 0, GPU_NEAREST } GpuDepthClear;
 void gpu_clear_depth(const GpuTarget *target, GpuDepthClear to); ///< to infinitely far, or to the near distance
 
@@ -105,11 +110,23 @@ void gpu_clear_depth(const GpuTarget *target, GpuDepthClear to); ///< to infinit
 typedef struct GpuBuffer {
   unsigned id;
   size_t capacity; // bytes
+  unsigned view;   // texture, see gpu_buffer_view
 } GpuBuffer;
 
-/// Replace the content. The buffer is made, or grows, as needed. false: GL is out of memory.
+/// Make room; the content is lost. The buffer is made, or grows, as needed. false: GL is out of memory.
+bool gpu_buffer_reserve(GpuBuffer *buffer, const char *label, size_t size, RenderError *error);
+/// Write a part of what has been reserved.
+void gpu_buffer_fill(const GpuBuffer *buffer, size_t offset, const void *data, size_t size);
+/// Both: replace the content.
 bool gpu_buffer_write(GpuBuffer *buffer, const char *label, const void *data, size_t size, RenderError *error);
+/// Let shaders read it as a samplerBuffer (GPU_RGBA32F) or an isamplerBuffer (GPU_R32I): storage blocks are small on some
+/// drivers, views are not. false: it holds more texels than the driver allows, which the message tells.
+bool gpu_buffer_view(GpuBuffer *buffer, GpuFormat format, size_t texels, RenderError *error);
 void gpu_buffer_destroy(GpuBuffer *buffer);
+/// For tests: views hold no more texels than this, whatever the driver allows. 0: no such limit (the default).
+void gpu_limit_views(size_t texels);
+/// Of all buffers of this process.
+size_t gpu_buffer_bytes(void);
 
 // ---- Programs --------------------------------------------------------------------------------------------------------
 
@@ -153,17 +170,33 @@ typedef enum GpuBlend {
   GPU_BLEND_OVER, // premultiplied: colour + (1 − alpha)·destination; the destination's alpha is kept
   GPU_BLEND_ADD,
   GPU_BLEND_MAX,    // the largest stays
-  GPU_BLEND_ADD_MAX // red, green, blue are added; of alpha the largest stays
+  GPU_BLEND_ADD_MAX, // red, green, blue are added; of alpha the largest stays
+  GPU_BLEND_OR       // bits are set, in targets of GPU_RGBA32UI
 } GpuBlend;
 
 typedef enum GpuCull { GPU_CULL_NONE = 0, GPU_CULL_BACK, GPU_CULL_FRONT } GpuCull;
 
 #define GPU_MAX_TEXTURES 12
+#define GPU_MAX_VIEWS 3
 #define GPU_MAX_STORAGE 8 // as many as every OpenGL 4.5 has
+/// A part of a buffer, bytes; of size 0: all of it. A storage block has a limit, which buffers of many elements exceed: they
+/// are drawn in parts of gpu_block_elements.
+typedef struct GpuPart {
+  size_t offset, size;
+} GpuPart;
+
+/// The most elements of this size in one part, such that every part may begin where the one before it ends. At most 2²⁴,
+/// so that floats and numbers of vertices count them exactly. 0: not even one fits; *error names the limit.
+int32_t gpu_block_elements(const Gpu *gpu, size_t element, RenderError *error);
+/// For tests: blocks hold no more than this, whatever the driver allows. 0: no such limit (the default).
+void gpu_limit_blocks(size_t bytes);
+
 /// Inputs of a draw or a dispatch. Entry i is bound to binding i of its kind; NULL entries are left unbound.
 typedef struct GpuInputs {
   const GpuTexture *textures[GPU_MAX_TEXTURES]; // samplers
+  const GpuBuffer *views[GPU_MAX_VIEWS];        // sampler buffers, bound behind the textures: from binding 12 on
   const GpuBuffer *storage[GPU_MAX_STORAGE];    // shader storage blocks
+  GpuPart parts[GPU_MAX_STORAGE];               // of them
   const GpuBuffer *frame;                       // uniform block 0: the Frame block of frame.glsl
   const void *params;                           // uniform block 1 (std140), copied
   size_t params_size;

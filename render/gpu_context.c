@@ -78,6 +78,11 @@ bool gpu_create(Gpu *gpu, RenderError *error) {
   *gpu = (Gpu){0};
   if (!gpu_check_version(gpu, error)) return false;
   gpu->software = strstr(gpu->description, "llvmpipe") != NULL || strstr(gpu->description, "softpipe") != NULL;
+  GLint64 block_limit = 0, block_start = 0;
+  glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &block_limit);
+  glGetInteger64v(GL_SHADER_STORAGE_BUFFER_OFFSET_ALIGNMENT, &block_start);
+  gpu->block_limit = (size_t)block_limit;
+  gpu->block_start = block_start > 0 ? (size_t)block_start : 1;
   glEnable(GL_DEBUG_OUTPUT);
 #ifdef RENDER_ABORT_ON_GL_ERROR
   glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);

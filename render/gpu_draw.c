@@ -35,7 +35,9 @@ static void set_depth(GpuDepth depth) {
 
 static void set_blend(GpuBlend blend) {
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-  set_switch(GL_BLEND, blend != GPU_BLEND_OFF);
+  set_switch(GL_COLOR_LOGIC_OP, blend == GPU_BLEND_OR);
+  glLogicOp(GL_OR);
+  set_switch(GL_BLEND, blend != GPU_BLEND_OFF && blend != GPU_BLEND_OR);
   const bool max_colour = blend == GPU_BLEND_MAX, max_alpha = max_colour || blend == GPU_BLEND_ADD_MAX;
   glBlendEquationSeparate(max_colour ? GL_MAX : GL_FUNC_ADD, max_alpha ? GL_MAX : GL_FUNC_ADD);
   if (blend == GPU_BLEND_OVER) {
@@ -51,14 +53,24 @@ static void set_cull(GpuCull cull) {
   glCullFace(cull == GPU_CULL_FRONT ? GL_FRONT : GL_BACK);
 }
 
+static void set_storage(GLuint binding, const GpuBuffer *buffer, GpuPart part) {
+  if (part.size > 0) {
+    glBindBufferRange(GL_SHADER_STORAGE_BUFFER, binding, buffer->id, (GLintptr)part.offset, (GLsizeiptr)part.size);
+  } else {
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, buffer != NULL ? buffer->id : 0);
+  }
+}
+
 static void set_inputs(const Gpu *gpu, const GpuInputs *in) {
   for (GLuint i = 0; i < GPU_MAX_TEXTURES; ++i) {
     glBindTextureUnit(i, in->textures[i] != NULL ? in->textures[i]->id : 0);
     glBindSampler(i, 0);
   }
-  for (GLuint i = 0; i < GPU_MAX_STORAGE; ++i) {
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, i, in->storage[i] != NULL ? in->storage[i]->id : 0);
+  for (GLuint i = 0; i < GPU_MAX_VIEWS; ++i) {
+    glBindTextureUnit(GPU_MAX_TEXTURES + i, in->views[i] != NULL ? in->views[i]->view : 0);
+    glBindSampler(GPU_MAX_TEXTURES + i, 0);
   }
+  for (GLuint i = 0; i < GPU_MAX_STORAGE; ++i) set_storage(i, in->storage[i], in->parts[i]);
   glBindBufferBase(GL_UNIFORM_BUFFER, 0, in->frame != NULL ? in->frame->id : 0);
   if (in->params_size > 0) {
     glNamedBufferData(gpu->params, (GLsizeiptr)in->params_size, in->params, GL_STREAM_DRAW);
@@ -101,6 +113,13 @@ void gpu_clear_colour(const GpuTarget *target, int32_t index, const float rgba[4
   glDisable(GL_SCISSOR_TEST);
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   glClearNamedFramebufferfv(target->id, GL_COLOR, index, rgba);
+}
+
+void gpu_clear_bits(const GpuTarget *target, int32_t index) {
+  const GLuint none[4] = {0};
+  glDisable(GL_SCISSOR_TEST);
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  glClearNamedFramebufferuiv(target->id, GL_COLOR, index, none);
 }
 
 void gpu_clear_depth(const GpuTarget *target, GpuDepthClear to) {

@@ -10,6 +10,8 @@ static const struct { GLenum internal, layout, type; int32_t channels; } formats
   [GPU_RGBA32F]  = { GL_RGBA32F,            GL_RGBA,            GL_FLOAT,         4 },
   [GPU_RG32F]    = { GL_RG32F,              GL_RG,              GL_FLOAT,         2 },
   [GPU_R32F]     = { GL_R32F,               GL_RED,             GL_FLOAT,         1 },
+  [GPU_RGBA32UI] = { GL_RGBA32UI,           GL_RGBA_INTEGER,    GL_UNSIGNED_INT,  4 },
+  [GPU_R32I]     = { GL_R32I,               GL_RED_INTEGER,     GL_INT,           1 },
   [GPU_DEPTH32F] = { GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT,         1 },
 };
 // clang-format on

@@ -1,5 +1,5 @@
-// Particles from the frame to the GPU. Positions may come from a file that nobody checked: what is not finite, or
-// absurdly far away, is left out here, and no later pass needs to think of it.
+// Particles from the frame to the GPU, in the frame's order. Positions may come from a file that nobody checked: what is not
+// finite, or absurdly far away, gets a radius of nothing here and is drawn by no later pass.
 #include "render/picture.h"
 
 #include <float.h>
@@ -20,7 +20,6 @@ static float clamp01(float x) {
 // Spray: a particle that is both sparse (its density is far below the water's mean) and fast is drawn whitish, as the
 // froth that it stands for.
 static float spray_of(const SimFrame *frame, int32_t i, float mean_density, float fast) {
-  if (frame->density == NULL || frame->velocity == NULL) return 0;
   const float *v = frame->velocity + 3 * (size_t)i;
   const float speed = sqrtf(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
   const float sparse = clamp01((0.75f - frame->density[i] / mean_density) / 0.3f);
@@ -29,7 +28,7 @@ static float spray_of(const SimFrame *frame, int32_t i, float mean_density, floa
 
 static float mean_density_of(const SimFrame *frame) {
   double sum = 0;
-  for (int32_t i = 0; frame->density != NULL && i < frame->count; ++i) {
+  for (int32_t i = 0; i < frame->count; ++i) {
     if (frame->density[i] > 0 && frame->density[i] < 1e9f) sum += frame->density[i];
   }
   return sum > 0 ? (float)(sum / frame->count) : 1000;
@@ -42,15 +41,6 @@ static float fast_of(const SimFrame *frame) {
   return height > 1e-4f && height < 1e6f ? sqrtf(9.81f * height) : 1;
 }
 
-static bool reserve(RenderParticles *particles, int32_t count, RenderError *error) {
-  if (count <= particles->capacity) return true;
-  float *grown = realloc(particles->staging, 8 * sizeof(float) * (size_t)count);
-  if (grown == NULL) return gpu_fail(error, "out of memory for %d particles", count);
-  particles->staging = grown;
-  particles->capacity = count;
-  return true;
-}
-
 static void add_to_bounds(RenderParticles *particles, const float p[3], float radius) {
   for (int k = 0; k < 3; ++k) {
     particles->bounds_min[k] = fminf(particles->bounds_min[k], p[k] - radius);
@@ -58,31 +48,49 @@ static void add_to_bounds(RenderParticles *particles, const float p[3], float ra
   }
 }
 
-// Fill the two halves of the staging memory: spheres first, colours after them. Returns the number of particles taken.
-static int32_t stage(RenderParticles *particles, const SimFrame *frame) {
-  const float mean_density = mean_density_of(frame), fast = fast_of(frame);
-  float *sphere = particles->staging, *colour = particles->staging + 4 * (size_t)particles->capacity;
-  int32_t taken = 0;
-  for (int32_t i = 0; i < frame->count; ++i) {
-    const float *p = frame->position + 3 * (size_t)i;
-    const float radius = frame->radius != NULL ? frame->radius[i] : frame->particle_radius;
-    if (!valid_position(p) || !(radius > 0 && radius < RENDER_FARTHEST)) continue;
-    const float *tint = frame->colour != NULL ? frame->colour + 3 * (size_t)i : water_colour;
-    for (int k = 0; k < 3; ++k) {
-      sphere[k] = p[k];
-      colour[k] = clamp01(tint[k]);
-    }
-    sphere[3] = radius;
-    colour[3] = spray_of(frame, i, mean_density, fast);
-    add_to_bounds(particles, p, radius);
-    sphere += 4;
-    colour += 4;
-    ++taken;
+// One particle; false: it is not to be drawn.
+static bool stage_one(const SimFrame *frame, int32_t i, float sphere[4], float colour[4]) {
+  const float *p = frame->position + 3 * (size_t)i;
+  const float radius = frame->radius != NULL ? frame->radius[i] : frame->particle_radius;
+  const bool taken = valid_position(p) && radius > 0 && radius < RENDER_FARTHEST;
+  const float *tint = frame->colour != NULL ? frame->colour + 3 * (size_t)i : water_colour;
+  for (int k = 0; k < 3; ++k) {
+    sphere[k] = taken ? p[k] : RENDER_FARTHEST;
+    colour[k] = clamp01(tint[k]);
   }
+  sphere[3] = taken ? radius : 0;
   return taken;
 }
 
-bool render_particles_upload(RenderParticles *particles, const SimFrame *frame, RenderError *error) {
+// What goes to the GPU at a time: 1 MiB of spheres, and of colours.
+#define BATCH 65536
+typedef struct Batch {
+  float sphere[BATCH][4], colour[BATCH][4];
+} Batch;
+
+// Particles in batches, as they lie in the frame. False: none is to be drawn.
+static bool send(RenderParticles *particles, const SimFrame *frame, Batch *batch) {
+  const float mean_density = particles->spray ? mean_density_of(frame) : 0, fast = fast_of(frame);
+  const size_t each = 4 * sizeof(float);
+  bool any = false;
+  for (int32_t first = 0, count; first < frame->count; first += count) {
+    count = frame->count - first < BATCH ? frame->count - first : BATCH;
+    for (int32_t i = 0; i < count; ++i) {
+      batch->colour[i][3] = particles->spray ? spray_of(frame, first + i, mean_density, fast) : 0;
+      if (!stage_one(frame, first + i, batch->sphere[i], batch->colour[i])) continue;
+      add_to_bounds(particles, batch->sphere[i], batch->sphere[i][3]);
+      any = true;
+    }
+    gpu_buffer_fill(&particles->spheres, each * (size_t)first, batch->sphere, each * (size_t)count);
+    if (particles->tinted || first == 0) {
+      gpu_buffer_fill(&particles->colours, each * (size_t)first, batch->colour,
+                      each * (size_t)(particles->tinted ? count : 1));
+    }
+  }
+  return any;
+}
+
+bool render_particles_upload(RenderParticles *particles, const SimFrame *frame, bool spray, RenderError *error) {
   for (int k = 0; k < 3; ++k) {
     particles->bounds_min[k] = FLT_MAX;
     particles->bounds_max[k] = -FLT_MAX;
@@ -90,17 +98,21 @@ bool render_particles_upload(RenderParticles *particles, const SimFrame *frame, 
   if (frame->count < 0 || (frame->count > 0 && frame->position == NULL)) {
     return gpu_fail(error, "the frame has no positions");
   }
-  if (!reserve(particles, frame->count, error)) return false;
-  particles->count = stage(particles, frame);
-  const size_t bytes = 4 * sizeof(float) * (size_t)particles->count;
-  const float *colours = particles->staging + 4 * (size_t)particles->capacity;
-  return gpu_buffer_write(&particles->spheres, "spheres", particles->staging, bytes, error) &&
-         gpu_buffer_write(&particles->colours, "colours", colours, bytes, error);
+  const size_t each = 4 * sizeof(float), count = (size_t)frame->count;
+  particles->count = 0;
+  particles->spray = spray && frame->density != NULL && frame->velocity != NULL;
+  particles->tinted = frame->colour != NULL || particles->spray;
+  Batch *batch = malloc(sizeof *batch);
+  if (batch == NULL) return gpu_fail(error, "out of memory for particles");
+  const bool room = gpu_buffer_reserve(&particles->spheres, "spheres", each * count, error) &&
+                    gpu_buffer_reserve(&particles->colours, "colours", each * (particles->tinted ? count : 1), error);
+  if (room && send(particles, frame, batch)) particles->count = frame->count;
+  free(batch);
+  return room;
 }
 
 void render_particles_destroy(RenderParticles *particles) {
   gpu_buffer_destroy(&particles->spheres);
   gpu_buffer_destroy(&particles->colours);
-  free(particles->staging);
   *particles = (RenderParticles){0};
 }

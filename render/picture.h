@@ -25,6 +25,8 @@ typedef struct RenderFrameBlock {
   float sun_u[4], sun_v[4]; // dot(p, xyz) + w is the place in the sun map, [0, 1]
   float sun_map[4];         // metres across the map in u and v; 1 − 1/n; –
   float absorption[4];      // 1/m; reflectance at normal incidence F0
+  float scattering[4];      // 1/m; 1 when the liquid is a metal, else 0
+  float reflectance[4];     // of a metal at normal incidence; –
   float sky_zenith[4];      // of the gradient sky; –
   float sky_horizon[4];     // of the gradient sky; –
   float floor_colour[2][4]; // of the checker; –
@@ -33,16 +35,17 @@ typedef struct RenderFrameBlock {
   float container_max[4];   // m; size of the scene (m)
 } RenderFrameBlock;
 
-/// The particles on the GPU: only those with a sensible position.
+/// The particles on the GPU, in the frame's order; those without a sensible position or radius have a radius of 0.
 typedef struct RenderParticles {
   GpuBuffer spheres; // (count) vec4: centre, radius of the particle at rest; m
-  GpuBuffer colours; // (count) vec4: colour, linear; spray 0 … 1
-  int32_t count;
+  GpuBuffer colours; // (count) vec4: colour, linear; spray 0 … 1; a single one for all where `tinted` is false
+  int32_t count;     // 0 when none is to be drawn
+  bool spray;        // particles may differ in spray
+  bool tinted;       // particles may differ in colour or spray
   float bounds_min[3], bounds_max[3]; // m, of the spheres taken; min > max when there are none
-  float *staging;                     // (capacity, 8)
-  int32_t capacity;
 } RenderParticles;
-bool render_particles_upload(RenderParticles *particles, const SimFrame *frame, RenderError *error);
+/// `spray`: it is looked at, so that particles need a colour each even where the frame has none.
+bool render_particles_upload(RenderParticles *particles, const SimFrame *frame, bool spray, RenderError *error);
 void render_particles_destroy(RenderParticles *particles);
 
 /// Which tiles of the picture spheres may touch: passes that only concern water draw these (screen.glsl with TILES).
@@ -70,7 +73,8 @@ typedef struct RenderTilePass {
   GpuProgramDesc desc;
   const GpuTarget *target;
   const GpuTexture *out[GPU_MAX_COLOURS];
-  GpuInputs in; // without frame and tiles
+  GpuInputs in;  // without frame and tiles
+  int32_t scale; // pixels of the picture across one of the target; 0: 1
 } RenderTilePass;
 bool render_tile_pass(RenderPicture *picture, const RenderTilePass *pass, RenderError *error);
 

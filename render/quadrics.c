@@ -255,16 +255,23 @@ bool render_quadrics_draw(RenderPicture *picture, const RenderQuadrics *quadrics
   if (!gpu_program_prepare(pass->program, &desc, error)) return false;
   const bool balls = pass->kind == RENDER_BALLS;
   const int32_t count = balls ? quadrics->ball_count : quadrics->ellipsoid_count;
-  if (count == 0) return true;
-  gpu_draw(picture->gpu, &(GpuDraw){
-                             .program = pass->program,
-                             .target = pass->out,
-                             .vertices = 6 * count,
-                             .depth = depths[pass->surface],
-                             .blend = pass->surface == RENDER_DEPTHS ? GPU_BLEND_MAX : GPU_BLEND_OFF,
-                             .in = {.storage = {balls ? &quadrics->balls : &quadrics->ellipsoids},
-                                    .textures = {pass->air},
-                                    .frame = &picture->uniforms},
-                         });
+  const size_t each = balls ? sizeof(Ball) : sizeof(Ellipsoid);
+  const int32_t most = gpu_block_elements(picture->gpu, each, error);
+  if (most == 0) return false;
+  for (int64_t first = 0; first < count; first += most) {
+    const int64_t left = count - first;
+    const int32_t drawn = left < most ? (int32_t)left : most;
+    gpu_draw(picture->gpu, &(GpuDraw){
+                               .program = pass->program,
+                               .target = pass->out,
+                               .vertices = 6 * drawn,
+                               .depth = depths[pass->surface],
+                               .blend = pass->surface == RENDER_DEPTHS ? GPU_BLEND_MAX : GPU_BLEND_OFF,
+                               .in = {.storage = {balls ? &quadrics->balls : &quadrics->ellipsoids},
+                                      .parts = {{each * (size_t)first, each * (size_t)drawn}},
+                                      .textures = {pass->air},
+                                      .frame = &picture->uniforms},
+                           });
+  }
   return true;
 }

@@ -151,7 +151,8 @@ static bool draw_passes(Render *render, const RenderView *view, void *state, Ren
   Gpu *gpu = &render->gpu;
 
   gpu_pass_begin(gpu, "upload");
-  bool ok = render_particles_upload(&picture->particles, picture->frame, error) &&
+  const bool spray = render->style->needs & SIM_NEED_DENSITY; // which is all that densities are for
+  bool ok = render_particles_upload(&picture->particles, picture->frame, spray, error) &&
             render_obstacles_upload(picture, error) && render_frame_block_write(picture, view, error);
   gpu_pass_end(gpu);
 
@@ -276,6 +277,10 @@ int32_t render_figures(Render *render, RenderFigure *figures, int32_t capacity) 
   while (render_styles[row] != NULL && render_styles[row] != render->style) ++row;
   if (render_styles[row] == NULL || render->states[row] == NULL || render->style->figures == NULL) return 0;
   return render->style->figures(render->states[row], figures, capacity);
+}
+
+size_t render_buffer_bytes(void) {
+  return gpu_buffer_bytes();
 }
 
 int32_t render_gl_error_count(const Render *render) {

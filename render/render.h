@@ -73,6 +73,26 @@ typedef struct RenderRefraction {
   bool surface_only;         ///< draw only particles near the surface (default); off: all, which looks the same
 } RenderRefraction;
 
+/// Where the normals of the style "raycast" come from.
+typedef enum RenderNormals {
+  RENDER_NORMALS_BLEND = 0,    ///< PCA as far as it agrees with the gradient (Eqs. 5, 6): the default
+  RENDER_NORMALS_GRADIENT = 1, ///< the gradient of a kernel sum alone (Eq. 2)
+  RENDER_NORMALS_PCA = 2       ///< the direction in which the particles vary least alone (Eqs. 3, 4)
+} RenderNormals;
+
+/// The style "raycast" (Xiao, Zhang, Yang 2017); make it with render_default_settings.
+typedef struct RenderRaycast {
+  float iso;                 ///< value of the field at the surface, in that of water at rest, [0.01, 0.99], default 0.25; the
+                             ///< paper's 10 … 30 with its 20 in the middle are 0.125 … 0.375
+  float support;             ///< of the field's kernel (Eq. 1), radii, [2, 8], default 4
+  RenderNormals normals;
+  float normal_reach;        ///< R of Eqs. 2 to 4, radii, [2, 12], default 6: 3 spacings
+  float blend_d, blend_k;    ///< of Eq. 6: [0, 1000], default 10, and [-1, 1], default 0.998
+  float blend_weight;        ///< w of Eq. 5 instead of Eq. 6, [0, 1]; negative (default): Eq. 6
+  float filter_reach;        ///< half of the bilateral filter's window, radii, [0, 20], default 3; 0: no filter
+  float filter_angle;        ///< its standard deviation of normals, as the length of their difference, (0, 2], default 0.2
+} RenderRaycast;
+
 /// Everything about a picture that is not the water's shape or the eye. Colours are linear light.
 /// Make it with render_default_settings, change what you need.
 typedef struct RenderSettings {
@@ -96,6 +116,9 @@ typedef struct RenderSettings {
 
   // liquid
   float absorption[3];         ///< 1/m per channel, red > green > blue, default (3.2, 0.68, 0.46)
+  float scattering[3];         ///< 1/m per channel: how soon light turns aside in it, default (0.14, 0.34, 0.36): a clear pool;
+                               ///< "points" and "raycast" show it
+  float reflectance[3];        ///< of a metal at normal incidence, [0, 1]; default 0: it lets light through. "raycast" shows it
   float refractive_index;      ///< of the liquid, default 1.333, range [1, 3]
 
   // picture
@@ -103,11 +126,23 @@ typedef struct RenderSettings {
   float exposure;              ///< factor before the curve, default 1, > 0
 
   RenderRefraction refraction;
+  RenderRaycast raycast;
 
   // style "points"
   struct { float scale; } points; ///< sphere radius in particle radii, default 1.25, range [0.1, 5]
 } RenderSettings;
 RenderSettings render_default_settings(void);
+
+/// Absorption, scattering, reflectance and refractive index of a liquid that has a name. Liquids that scatter much are opaque
+/// a few centimetres deep.
+typedef struct RenderMaterial {
+  const char *name;
+  float absorption[3], scattering[3], reflectance[3];
+  float refractive_index;
+} RenderMaterial;
+const RenderMaterial *render_material(int32_t index);           ///< NULL when out of range; 0 is "water", the default
+const RenderMaterial *render_material_find(const char *name);   ///< NULL when there is none
+void render_use_material(RenderSettings *settings, const RenderMaterial *material);
 
 typedef struct Render Render;
 
@@ -169,6 +204,10 @@ typedef struct RenderFigure { const char *name; double value; } RenderFigure;
 /// Of "refraction": the share of the water's pixels in which a ray went through "splash" or "aggregated" water alone, or
 /// through two bodies ("splash_aggregated" …). Waits for the GPU. Returns how many there are; at most `capacity` are written.
 int32_t render_figures(Render *render, RenderFigure *figures, int32_t capacity);
+
+/// Bytes in OpenGL's buffers, of all renderers of this process: particles, grids and other lists, not textures. A software
+/// renderer holds them in the memory of the process.
+size_t render_buffer_bytes(void);
 
 /// Errors and warnings that the driver reported (KHR_debug) since creation; 0 in a correct program.
 int32_t render_gl_error_count(const Render *render);

@@ -22,6 +22,7 @@ RenderSettings render_default_settings(void) {
       .floor_colour = {{0.8f, 0.8f, 0.8f}, {0.2f, 0.2f, 0.2f}},
       .container_visible = true,
       .absorption = {3.2f, 0.68f, 0.46f},
+      .scattering = {0.14f, 0.34f, 0.36f},
       .refractive_index = 1.333f,
       .tone_map = RENDER_TONE_FILMIC,
       .exposure = 1,
@@ -35,6 +36,15 @@ RenderSettings render_default_settings(void) {
                      .view_dependent = true,
                      .splashes_apart = true,
                      .surface_only = true},
+      .raycast = {.iso = 0.25f,
+                  .support = 4,
+                  .normals = RENDER_NORMALS_BLEND,
+                  .normal_reach = 6,
+                  .blend_d = 10,
+                  .blend_k = 0.998f,
+                  .blend_weight = -1,
+                  .filter_reach = 3,
+                  .filter_angle = 0.2f},
       .points = {.scale = 1.25f},
   };
 }
@@ -73,6 +83,19 @@ static bool refraction_check(const RenderRefraction *r, RenderError *error) {
   return true;
 }
 
+static bool raycast_check(const RenderRaycast *r, RenderError *error) {
+  if (!in_range(r->iso, 0.01f, 0.99f)) return gpu_fail(error, "the iso-value must be in [0.01, 0.99]");
+  if (!in_range(r->support, 2, 8)) return gpu_fail(error, "the support of the field must be in [2, 8] radii");
+  if ((unsigned)r->normals > RENDER_NORMALS_PCA) return gpu_fail(error, "unknown normals %d", (int)r->normals);
+  if (!in_range(r->normal_reach, 2, 12)) return gpu_fail(error, "the reach of normals must be in [2, 12] radii");
+  if (!in_range(r->blend_d, 0, 1000)) return gpu_fail(error, "d of the blend must be in [0, 1000]");
+  if (!in_range(r->blend_k, -1, 1)) return gpu_fail(error, "k of the blend must be in [-1, 1]");
+  if (!in_range(r->blend_weight, -1, 1)) return gpu_fail(error, "the weight of the blend must be in [-1, 1]");
+  if (!in_range(r->filter_reach, 0, 20)) return gpu_fail(error, "the reach of the filter must be in [0, 20] radii");
+  if (!in_range(r->filter_angle, 1e-3f, 2)) return gpu_fail(error, "the angle of the filter must be in [0.001, 2]");
+  return true;
+}
+
 bool render_settings_check(const RenderSettings *s, RenderError *error) {
   if (s->cookie != SETTINGS_COOKIE) return gpu_fail(error, "settings were not made by render_default_settings");
   if (!all_finite(s->sun_direction, 3) || is_zero(s->sun_direction)) {
@@ -91,10 +114,12 @@ bool render_settings_check(const RenderSettings *s, RenderError *error) {
   }
   if (!in_range(s->tile_size, 1e-4f, 1e6f)) return gpu_fail(error, "the tile size must be in [0.0001, 1000000] m");
   if (!all_in_range(s->absorption, 3, 0, 1e6f)) return gpu_fail(error, "absorption must be in [0, 1000000] 1/m");
+  if (!all_in_range(s->scattering, 3, 0, 1e6f)) return gpu_fail(error, "scattering must be in [0, 1000000] 1/m");
+  if (!all_in_range(s->reflectance, 3, 0, 1)) return gpu_fail(error, "reflectance must be in [0, 1]");
   if (!in_range(s->refractive_index, 1, 3)) return gpu_fail(error, "the refractive index must be in [1, 3]");
   if (!in_range(s->exposure, 1e-6f, 1e6f)) return gpu_fail(error, "the exposure must be in [0.000001, 1000000]");
   if (!in_range(s->points.scale, 0.1f, 5)) return gpu_fail(error, "the scale of points must be in [0.1, 5]");
-  return refraction_check(&s->refraction, error);
+  return refraction_check(&s->refraction, error) && raycast_check(&s->raycast, error);
 }
 
 bool render_view_check(const RenderView *view, RenderError *error) {

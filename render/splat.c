@@ -7,7 +7,8 @@ typedef struct SplatParams {
   float scale;   // radius drawn, in particle radii
   float volume;  // metres of water for a metre of chord
   float size[2]; // of the target, pixels
-  float unused[4];
+  float tinted;  // 1: every particle has a colour; 0: one for all
+  float unused[3];
 } SplatParams;
 
 // A particle at rest stands for a cube of edge 2r; its sphere has 4/3 π (scale·r)³.
@@ -15,18 +16,31 @@ static float water_per_chord(float scale) {
   return 6 / (3.14159265f * scale * scale * scale);
 }
 
-static void splat(RenderPicture *picture, const GpuProgram *program, float scale, const GpuTarget *out, GpuDraw draw) {
-  if (picture->particles.count == 0) return;
-  const SplatParams params = {scale, water_per_chord(scale), {(float)out->width, (float)out->height}, {0}};
+// All particles, in as many draws as the driver's storage blocks need.
+static bool splat(RenderPicture *picture, const GpuProgram *program, float scale, const GpuTarget *out, GpuDraw draw,
+                  RenderError *error) {
+  const RenderParticles *particles = &picture->particles;
+  const SplatParams params = {
+      scale, water_per_chord(scale), {(float)out->width, (float)out->height}, particles->tinted, {0}};
+  const size_t each = 4 * sizeof(float);
+  const int32_t most = gpu_block_elements(picture->gpu, each, error);
+  if (most == 0) return false;
   draw.program = program;
   draw.target = out;
-  draw.vertices = 6 * picture->particles.count;
-  draw.in.storage[0] = &picture->particles.spheres;
-  draw.in.storage[1] = &picture->particles.colours;
+  draw.in.storage[0] = &particles->spheres;
+  draw.in.storage[1] = &particles->colours;
   draw.in.frame = &picture->uniforms;
   draw.in.params = &params;
   draw.in.params_size = sizeof params;
-  gpu_draw(picture->gpu, &draw);
+  for (int64_t first = 0; first < particles->count; first += most) {
+    const int64_t left = particles->count - first;
+    const int32_t count = left < most ? (int32_t)left : most;
+    draw.vertices = 6 * count;
+    draw.in.parts[0] = (GpuPart){each * (size_t)first, each * (size_t)count};
+    if (particles->tinted) draw.in.parts[1] = draw.in.parts[0];
+    gpu_draw(picture->gpu, &draw);
+  }
+  return true;
 }
 
 bool render_splat_surface(RenderPicture *picture, GpuProgram *program, float scale, const GpuTarget *out,
@@ -36,8 +50,7 @@ bool render_splat_surface(RenderPicture *picture, GpuProgram *program, float sca
   const float nothing[4] = {0, 0, 0, 0};
   gpu_clear_colour(out, 0, nothing);
   gpu_clear_colour(out, 1, nothing);
-  splat(picture, program, scale, out, (GpuDraw){.depth = GPU_DEPTH_WRITE});
-  return true;
+  return splat(picture, program, scale, out, (GpuDraw){.depth = GPU_DEPTH_WRITE}, error);
 }
 
 bool render_splat_thickness(RenderPicture *picture, GpuProgram *program, float scale, const GpuTarget *out,
@@ -46,8 +59,8 @@ bool render_splat_thickness(RenderPicture *picture, GpuProgram *program, float s
   if (!gpu_program_prepare(program, &desc, error)) return false;
   const float nothing[4] = {0, 0, 0, 0};
   gpu_clear_colour(out, 0, nothing);
-  splat(picture, program, scale, out, (GpuDraw){.blend = GPU_BLEND_ADD, .in.textures = {&picture->background.colour}});
-  return true;
+  const GpuDraw draw = {.blend = GPU_BLEND_ADD, .in.textures = {&picture->background.colour}};
+  return splat(picture, program, scale, out, draw, error);
 }
 
 bool render_splat_sun(RenderPicture *picture, GpuProgram *program, float scale, const GpuTarget *out,
@@ -56,6 +69,5 @@ bool render_splat_sun(RenderPicture *picture, GpuProgram *program, float scale, 
   if (!gpu_program_prepare(program, &desc, error)) return false;
   const float nothing[4] = {0, 0, 0, -1e9f};
   gpu_clear_colour(out, 0, nothing);
-  splat(picture, program, scale, out, (GpuDraw){.blend = GPU_BLEND_ADD_MAX});
-  return true;
+  return splat(picture, program, scale, out, (GpuDraw){.blend = GPU_BLEND_ADD_MAX}, error);
 }

@@ -98,7 +98,7 @@ static bool points_draw(void *state, RenderPicture *picture, RenderError *error)
 const RenderStyle style_points = {
     .name = "points",
     .summary = "every particle a ray-cast sphere of water",
-    .needs = SIM_NEED_NOTHING,
+    .needs = SIM_NEED_DENSITY, // of the spray
     .state_size = sizeof(Points),
     .layers = layers,
     .layer_count = sizeof layers / sizeof layers[0],

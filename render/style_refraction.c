@@ -8,6 +8,7 @@
 // their depths; water is flush with the walls of its container and wets what it touches; rays that leave the water meet
 // the scene's geometry; total internal reflection goes on in the water.
 #include "render/occupancy.h"
+#include "render/scene_rays.h"
 #include "render/style.h"
 #include "render/water_surface.h"
 
@@ -169,40 +170,31 @@ static bool draw_colours(Refraction *s, RenderPicture *picture, RenderError *err
   return true;
 }
 
-// Choices of refract.glsl that are made when it is compiled: a software rasteriser runs both sides of a branch.
+// Choices of refract.glsl that are made when it is compiled.
 static void light_defines(const Refraction *s, const RenderPicture *picture, char *defines, size_t size) {
-  const RenderObstacles *o = &picture->obstacles;
-  const int32_t *first = o->first, count = picture->settings->refraction.count;
-  const bool edges = picture->block.container_min[3] != 0 && picture->frame->container.shape == SIM_CONTAINER_BOX;
-  snprintf(defines, size,
-           "%s#define REFRACTIONS %d\n%s%s%s%s%s%s"
-           "#define BOXES %d\n#define BALLS %d\n#define CYLINDERS %d\n#define CAPSULES %d\n#define STAIRS %d\n#define "
-           "MESHES %d\n",
-           picture->defines, count, picture->frame->colour != NULL ? "#define COLOURED 1\n" : "",
-           render_water_surface_clip_define(picture->frame), s->submerged ? "#define SUBMERGED 1\n" : "",
-           edges ? "#define BOX_EDGES 1\n" : "", s->quadrics.ball_count > 0 ? "#define SPLASHES 1\n" : "",
-           o->count > 0 ? "#define BODIES 1\n" : "", o->count > 0 && first[1] > first[0],
-           o->count > 0 && first[2] > first[1], o->count > 0 && first[3] > first[2],
-           o->count > 0 && first[4] > first[3], o->count > 0 && first[5] > first[4],
-           o->count > 0 && first[6] > first[5]);
+  const int used = render_scene_defines(picture, defines, size);
+  snprintf(defines + used, size - (size_t)used, "#define REFRACTIONS %d\n%s%s%s%s", picture->settings->refraction.count,
+           picture->frame->colour != NULL ? "#define COLOURED 1\n" : "", render_container_define(picture->frame),
+           s->submerged ? "#define SUBMERGED 1\n" : "", s->quadrics.ball_count > 0 ? "#define SPLASHES 1\n" : "");
 }
 
 // std140 block of refract.glsl
 typedef struct LightParams {
   float particle[4];
-  int32_t ends[8];
+  RenderBodyEnds ends;
   RenderOccupancyBlock occupancy;
 } LightParams;
 
 static bool draw_light(Refraction *s, RenderPicture *picture, RenderError *error) {
-  char defines[sizeof picture->defines + 352];
+  char defines[sizeof picture->defines + 416];
   light_defines(s, picture, defines, sizeof defines);
   const GpuProgramDesc desc = {.label = "refraction: light", .file = "refract.glsl", .defines = defines};
   if (!gpu_program_prepare(&s->light_program, &desc, error)) return false;
   const RenderTiles *tiles = &picture->tiles;
   const float r = picture->frame->particle_radius, nothing[4] = {0};
-  LightParams params = {{r, 0, picture->block.container_max[3], 1.5f * r}, {0}, render_occupancy_block(&s->occupancy)};
-  for (int shape = 0; shape < SIM_SHAPE_COUNT; ++shape) params.ends[shape] = picture->obstacles.first[shape + 1];
+  const LightParams params = {{r, 0, picture->block.container_max[3], 1.5f * r},
+                              render_body_ends(picture),
+                              render_occupancy_block(&s->occupancy)};
   gpu_clear_colour(&s->light_target, 1, nothing);
   gpu_clear_colour(&s->light_target, 2, nothing);
   gpu_draw(picture->gpu,

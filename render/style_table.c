@@ -4,11 +4,13 @@
 #include <string.h>
 
 extern const RenderStyle style_points;
+extern const RenderStyle style_raycast;
 extern const RenderStyle style_refraction;
 
 const RenderStyle *const render_styles[] = {
     &style_points,
     &style_refraction,
+    &style_raycast,
     NULL,
 };
 

@@ -24,13 +24,12 @@ bool render_tiles_clear(RenderPicture *picture, RenderError *error) {
   return written;
 }
 
-bool render_tiles_mark(RenderPicture *picture, const RenderTileMarks *marks, RenderError *error) {
+// The spheres in a part of their buffer.
+static void mark(RenderPicture *picture, const RenderTileMarks *marks, GpuPart part) {
   RenderTiles *tiles = &picture->tiles;
-  const GpuProgramDesc desc = {.label = "tiles", .file = "tiles.glsl", .compute = true};
-  if (!gpu_program_prepare(&tiles->program, &desc, error)) return false;
-  if (marks->count == 0) return true;
+  const int32_t count = (int32_t)(part.size / (4 * sizeof(float) * (size_t)marks->stride));
   const TileParams params = {.scale = marks->scale,
-                             .count = (float)marks->count,
+                             .count = (float)count,
                              .row = ROW,
                              .columns = (float)tiles->columns,
                              .tile_size = RENDER_TILE_SIZE,
@@ -38,12 +37,26 @@ bool render_tiles_mark(RenderPicture *picture, const RenderTileMarks *marks, Ren
   gpu_dispatch(picture->gpu, &(GpuDispatch){
                                  .program = &tiles->program,
                                  .width = ROW,
-                                 .height = (marks->count + ROW - 1) / ROW,
+                                 .height = (count + ROW - 1) / ROW,
                                  .in = {.storage = {marks->spheres, &tiles->mask},
+                                        .parts = {part},
                                         .frame = &picture->uniforms,
                                         .params = &params,
                                         .params_size = sizeof params},
                              });
+}
+
+bool render_tiles_mark(RenderPicture *picture, const RenderTileMarks *marks, RenderError *error) {
+  RenderTiles *tiles = &picture->tiles;
+  const GpuProgramDesc desc = {.label = "tiles", .file = "tiles.glsl", .compute = true};
+  if (!gpu_program_prepare(&tiles->program, &desc, error)) return false;
+  const size_t each = 4 * sizeof(float) * (size_t)marks->stride;
+  const int32_t most = gpu_block_elements(picture->gpu, each, error);
+  if (most == 0) return false;
+  for (int64_t first = 0; first < marks->count; first += most) {
+    const int64_t left = marks->count - first;
+    mark(picture, marks, (GpuPart){each * (size_t)first, each * (size_t)(left < most ? left : most)});
+  }
   return true;
 }
 
@@ -56,7 +69,11 @@ bool render_tile_pass(RenderPicture *picture, const RenderTilePass *pass, Render
   in.frame = &picture->uniforms;
   if (!gpu_program_prepare(pass->program, &desc, error)) return false;
   if (desc.compute) {
-    GpuDispatch dispatch = {.program = pass->program, .width = picture->width, .height = picture->height, .in = in};
+    const int32_t scale = pass->scale > 0 ? pass->scale : 1;
+    GpuDispatch dispatch = {.program = pass->program,
+                            .width = (picture->width + scale - 1) / scale,
+                            .height = (picture->height + scale - 1) / scale,
+                            .in = in};
     for (int i = 0; i < GPU_MAX_COLOURS; ++i) dispatch.output[i] = pass->out[i];
     gpu_dispatch(picture->gpu, &dispatch);
   } else {

@@ -1,5 +1,7 @@
 #include "render/water_surface.h"
 
+#include "render/scene_rays.h"
+
 #include <stdio.h>
 
 bool render_water_surface_resize(RenderWaterSurface *surface, int32_t width, int32_t height, RenderError *error) {
@@ -137,7 +139,7 @@ static bool draw_raw_normals(RenderWaterSurface *surface, RenderPicture *picture
 static bool write_normals(RenderWaterSurface *surface, RenderPicture *picture, bool analytic, RenderError *error) {
   const float bend[4] = {radius_of(picture)};
   char defines[64];
-  snprintf(defines, sizeof defines, "%s%s", render_water_surface_clip_define(picture->frame),
+  snprintf(defines, sizeof defines, "%s%s", render_container_define(picture->frame),
            analytic ? "#define ANALYTIC 1\n" : "");
   RenderTilePass pass = {
       .program = &surface->normal_program[analytic],
@@ -256,20 +258,9 @@ static bool smooth(RenderWaterSurface *surface, RenderPicture *picture, const Re
 
 // ---- Walls -----------------------------------------------------------------------------------------------------------
 
-const char *render_water_surface_clip_define(const SimFrame *frame) {
-  const SimContainer *c = &frame->container;
-  bool sensible = frame->has_container;
-  for (int k = 0; k < 3; ++k) {
-    sensible = sensible && c->min[k] > -RENDER_FARTHEST && c->max[k] < RENDER_FARTHEST && c->min[k] < c->max[k];
-  }
-  if (sensible && c->shape == SIM_CONTAINER_BOX) return "#define CLIP_BOX 1\n";
-  if (sensible && c->shape == SIM_CONTAINER_GLASS) return "#define CLIP_GLASS 1\n";
-  return "";
-}
-
 static bool clip(RenderWaterSurface *surface, RenderPicture *picture, RenderError *error) {
   char defines[64];
-  snprintf(defines, sizeof defines, "%s%s", render_water_surface_clip_define(picture->frame),
+  snprintf(defines, sizeof defines, "%s%s", render_container_define(picture->frame),
            surface->submerged ? "#define SUBMERGED 1\n" : "");
   surface->uncut = surface->smoothed;
   if (defines[0] == '\0') return true;

@@ -39,9 +39,6 @@ void render_water_surface_destroy(RenderWaterSurface *surface);
 /// in, of which the back is then where the first air begins; NULL when the eye is in the air.
 bool render_water_surface_depths(RenderWaterSurface *surface, RenderPicture *picture, const RenderQuadrics *quadrics,
                                  const RenderOccupancy *around, RenderError *error);
-/// The shape of the container that water is cut off at, as a definition for shaders: CLIP_BOX, CLIP_GLASS or, where the frame
-/// has no container that could hold anything, none.
-const char *render_water_surface_clip_define(const SimFrame *frame);
 /// Input: inverse[0] and, for filters that start from the particles' own normals, the ellipsoids. Output: inverse[smoothed], cut
 /// off at the container's walls; where the eye is in the water its front is at the near distance.
 bool render_water_surface_smooth(RenderWaterSurface *surface, RenderPicture *picture, const RenderQuadrics *quadrics,

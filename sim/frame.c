@@ -51,11 +51,18 @@ static bool reserve_floats(float **array, size_t count) {
   return sim_reserve((void **)array, count, sizeof(float));
 }
 
-static bool reserve_particles(SimFrameBuffer *buffer, int32_t count, bool colour, bool radius) {
+// Arrays that a frame has only if its particles do.
+typedef struct Arrays {
+  bool id, velocity, density, colour, radius;
+} Arrays;
+
+static bool reserve_particles(SimFrameBuffer *buffer, int32_t count, Arrays has) {
   size_t n = padded(count);
-  return sim_reserve((void **)&buffer->id, n, sizeof(uint32_t)) && reserve_floats(&buffer->position, 3 * n) &&
-         reserve_floats(&buffer->velocity, 3 * n) && reserve_floats(&buffer->density, n) &&
-         (!colour || reserve_floats(&buffer->colour, 3 * n)) && (!radius || reserve_floats(&buffer->radius, n));
+  return reserve_floats(&buffer->position, 3 * n) &&
+         (!has.id || sim_reserve((void **)&buffer->id, n, sizeof(uint32_t))) &&
+         (!has.velocity || reserve_floats(&buffer->velocity, 3 * n)) &&
+         (!has.density || reserve_floats(&buffer->density, n)) &&
+         (!has.colour || reserve_floats(&buffer->colour, 3 * n)) && (!has.radius || reserve_floats(&buffer->radius, n));
 }
 
 static bool reserve_order(SimFrameBuffer *buffer, int32_t count) {
@@ -166,6 +173,11 @@ static SimSurface surface_of(const SimFrameBuffer *buffer, const SimWide *wide, 
   return surface;
 }
 
+static bool fail_crowded(const SimFrame *frame, SimError *error) {
+  return sim_fail(error, "the particles are crowded into one place: more than their radius %g m allows",
+                  (double)frame->particle_radius);
+}
+
 static bool build_lists(SimFrameBuffer *buffer, const SimWide *wide, float *const position[3], SimError *error) {
   const SimFrame *frame = &buffer->frame;
   float spacing = 2 * frame->particle_radius;
@@ -173,8 +185,11 @@ static bool build_lists(SimFrameBuffer *buffer, const SimWide *wide, float *cons
                                                    SIM_SURFACE_REACH * spacing, buffer->threads);
   if (result == SIM_NEIGHBOURS_NO_MEMORY) return sim_fail(error, "out of memory");
   if (result == SIM_NEIGHBOURS_CROWDED)
-    return sim_fail(error, "the particles are crowded into one place: more than their radius %g m allows",
-                    (double)frame->particle_radius);
+    return sim_fail(
+        error,
+        "%d particles have more neighbours than can be listed: they are too many, or crowded into one place, "
+        "more than their radius %g m allows",
+        frame->count, (double)frame->particle_radius);
   return true;
 }
 
@@ -260,7 +275,8 @@ static bool order_world(const SimWorld *world, SimFrameBuffer *buffer, const uin
   float reach = SIM_SURFACE_REACH * world->cubic.spacing;
   *order = NULL;
   if (world->cubic.h >= reach) return copy_grid(buffer, &world->sort.grid, error);
-  if (!sim_grid_sort(&buffer->sort, world->particles.now.position, world->particles.count, reach, world->threads))
+  SimPositions places = sim_positions(world->particles.now.position);
+  if (!sim_grid_sort(&buffer->sort, places, world->particles.count, sim_cells(reach), world->threads))
     return sim_fail(error, "out of memory");
   *order = buffer->sort.order;
   buffer->frame.grid = buffer->sort.grid;
@@ -271,8 +287,8 @@ const SimFrame *sim_world_frame(SimWorld *world, unsigned needs, SimFrameBuffer 
   if (!sim_world_settle(world, error)) return NULL;
   double since = sim_milliseconds();
   int32_t count = world->particles.count;
-  if (!reserve_particles(buffer, count, world->particles.coloured, false) ||
-      !reserve_surface(buffer, count, needs, false))
+  Arrays has = {.id = true, .velocity = true, .density = true, .colour = world->particles.coloured};
+  if (!reserve_particles(buffer, count, has) || !reserve_surface(buffer, count, needs, false))
     return sim_fail(error, "out of memory"), NULL;
   SimFrame *frame = &buffer->frame;
   buffer->threads = world->threads;
@@ -300,9 +316,18 @@ const SimFrame *sim_world_frame(SimWorld *world, unsigned needs, SimFrameBuffer 
 
 // ---- From particles that come from elsewhere --------------------------------------------------------------------------
 
+// Whether a stage reads neighbour lists, and whether one reads positions as axes and side by side.
+static bool needs_lists(unsigned needs, bool has_class) {
+  return needs & (SIM_NEED_ANISOTROPY | SIM_NEED_SURFACE) || (needs & SIM_NEED_CLASS && !has_class);
+}
+
+static bool needs_order(unsigned needs, bool has_class) {
+  return needs_lists(needs, has_class) || needs & SIM_NEED_HEIGHT_FIELD;
+}
+
 static bool check_set(const SimParticleSet *set, SimError *error) {
-  if (set->count < 0 || set->count > SIM_MAX_PARTICLES)
-    return sim_fail(error, "particle count must be in [0, %d], got %d", SIM_MAX_PARTICLES, set->count);
+  if (set->count < 0 || set->count > SIM_MAX_SET_PARTICLES)
+    return sim_fail(error, "particle count must be in [0, %d], got %d", SIM_MAX_SET_PARTICLES, set->count);
   if (set->count > 0 && !set->position) return sim_fail(error, "the particles have no positions");
   for (int64_t i = 0; i < set->count; i++)
     for (int k = 0; k < 3; k++)
@@ -317,43 +342,49 @@ static bool check_set(const SimParticleSet *set, SimError *error) {
 typedef struct SetContext {
   const SimParticleSet *set;
   SimFrameBuffer *buffer;
-  float *axis[3];
 } SetContext;
-
-static void unsorted_kernel(int32_t begin, int32_t end, const void *context) {
-  const SetContext *c = context;
-  for (int64_t i = begin; i < end; i++)
-    for (int k = 0; k < 3; k++) c->axis[k][i] = c->set->position[3 * i + k];
-}
 
 static void gather_kernel(int32_t begin, int32_t end, const void *context) {
   const SetContext *c = context;
   const SimParticleSet *set = c->set;
   SimFrameBuffer *buffer = c->buffer;
-  const float zero[3] = {0, 0, 0};
+  const size_t vector = 3 * sizeof(float);
   for (int64_t i = begin; i < end; i++) {
     int64_t from = buffer->sort.order[i];
-    buffer->id[i] = set->id ? set->id[from] : (uint32_t)from;
-    memcpy(buffer->position + 3 * i, set->position + 3 * from, sizeof zero);
-    memcpy(buffer->velocity + 3 * i, set->velocity ? set->velocity + 3 * from : zero, sizeof zero);
-    if (set->colour) memcpy(buffer->colour + 3 * i, set->colour + 3 * from, sizeof zero);
+    memcpy(buffer->position + 3 * i, set->position + 3 * from, vector);
+    if (set->id) buffer->id[i] = set->id[from];
+    if (set->velocity) memcpy(buffer->velocity + 3 * i, set->velocity + 3 * from, vector);
+    if (set->colour) memcpy(buffer->colour + 3 * i, set->colour + 3 * from, vector);
     if (set->radius) buffer->radius[i] = set->radius[from];
     if (set->particle_class) buffer->particle_class[i] = set->particle_class[from] ? SIM_AGGREGATED : SIM_SPLASH;
   }
 }
 
+// The set's particles in the order of their cells. Sorted where they are: no array of theirs is copied but for the frame.
 static bool sort_set(const SimParticleSet *set, SimFrameBuffer *buffer, SimError *error) {
-  SetContext context = {.set = set, .buffer = buffer};
-  size_t n = padded(set->count);
-  for (size_t k = 0; k < 3; k++) context.axis[k] = buffer->four + k * n; // until the order is known
-  sim_parallel_for(buffer->threads, set->count, unsorted_kernel, &context);
-  float cell = SIM_SURFACE_REACH * 2 * buffer->frame.particle_radius;
-  if (!sim_grid_sort(&buffer->sort, context.axis, set->count, cell, buffer->threads))
+  SimFrame *frame = &buffer->frame;
+  SimPositions places = {{0}, 3};
+  for (int k = 0; k < 3 && set->position; k++) places.axis[k] = set->position + k;
+  const SimCells cells = {.size = SIM_SURFACE_REACH * 2 * frame->particle_radius, .each = 0.5f};
+  if (!sim_grid_sort(&buffer->sort, places, set->count, cells, buffer->threads))
     return sim_fail(error, "out of memory");
-  buffer->frame.grid = buffer->sort.grid;
-  sim_parallel_for(buffer->threads, set->count, gather_kernel, &context);
-  split_positions(buffer);
+  frame->grid = buffer->sort.grid;
+  sim_parallel_for(buffer->threads, set->count, gather_kernel, &(SetContext){set, buffer});
+  frame->id = set->id ? buffer->id : buffer->sort.order;
+  frame->position = buffer->position;
+  frame->velocity = set->velocity ? buffer->velocity : NULL;
+  frame->colour = set->colour ? buffer->colour : NULL;
+  frame->radius = set->radius ? buffer->radius : NULL;
   return true;
+}
+
+static void bounds_of_set(const SimParticleSet *set, SimFrame *frame) {
+  frame->has_container = set->container != NULL;
+  if (set->container) frame->container = *set->container;
+  bounds_of(frame);
+  if (set->container) return;
+  memcpy(frame->container.min, frame->bounds_min, sizeof frame->bounds_min);
+  memcpy(frame->container.max, frame->bounds_max, sizeof frame->bounds_max);
 }
 
 static void scale_kernel(int32_t begin, int32_t end, const void *context) {
@@ -361,34 +392,42 @@ static void scale_kernel(int32_t begin, int32_t end, const void *context) {
   for (int32_t i = begin; i < end; i++) buffer->density[i] *= 1000;
 }
 
+// Density and surface stages of a sorted set. Those that read neighbour lists share them; a density alone does without. A
+// heap is refused whatever is needed, because who gets the frame may search around particles, too.
+static bool measure_set(SimFrameBuffer *buffer, unsigned needs, bool has_class, SimError *error) {
+  SimFrame *frame = &buffer->frame;
+  const SimWide *wide = sim_wide();
+  bool lists = needs_lists(needs, has_class), density = needs & SIM_NEED_DENSITY;
+  if (sim_grid_candidates(&frame->grid, SIM_SURFACE_REACH * 2 * frame->particle_radius) > SIM_MAX_CANDIDATES)
+    return fail_crowded(frame, error);
+  if (needs_order(needs, has_class)) split_positions(buffer);
+  if (lists && !build_lists(buffer, wide, buffer->axis, error)) return false;
+  SimSurface surface = surface_of(buffer, wide, buffer->axis, buffer->four, &buffer->lists);
+  float *swept = density && lists ? buffer->density : NULL;
+  if (!run_surface_stages(buffer, &surface, needs, has_class, swept, NULL, error)) return false;
+  frame->density = density ? buffer->density : NULL;
+  if (density && !lists)
+    sim_surface_density(wide, &frame->grid, frame->position, frame->count, surface.spacing, buffer->density,
+                        buffer->threads);
+  if (density) sim_parallel_for(buffer->threads, frame->count, scale_kernel, buffer);
+  return true;
+}
+
 const SimFrame *sim_frame_from_particles(const SimParticleSet *set, unsigned needs, int32_t threads,
                                          SimFrameBuffer *buffer, SimError *error) {
   if (!check_set(set, error)) return NULL;
-  if (!reserve_particles(buffer, set->count, set->colour, set->radius) || !reserve_order(buffer, set->count) ||
-      !reserve_surface(buffer, set->count, needs, set->particle_class))
+  Arrays has = {set->id, set->velocity, needs & SIM_NEED_DENSITY, set->colour, set->radius};
+  bool has_class = set->particle_class;
+  if (!reserve_particles(buffer, set->count, has) ||
+      (needs_order(needs, has_class) && !reserve_order(buffer, set->count)) ||
+      !reserve_surface(buffer, set->count, needs, has_class))
     return sim_fail(error, "out of memory"), NULL;
   SimFrame *frame = &buffer->frame;
-  const SimWide *wide = sim_wide();
   buffer->threads = sim_parallel_threads(threads);
   *frame = (SimFrame){.index = set->index, .time = set->time, .count = set->count};
   frame->particle_radius =
       set->particle_radius > 0 ? set->particle_radius : sim_estimate_radius(set->position, set->count);
-  if (!sort_set(set, buffer, error) || !build_lists(buffer, wide, buffer->axis, error)) return NULL;
-  frame->id = buffer->id;
-  frame->position = buffer->position;
-  frame->velocity = buffer->velocity;
-  frame->density = buffer->density;
-  frame->colour = set->colour ? buffer->colour : NULL;
-  frame->radius = set->radius ? buffer->radius : NULL;
-  frame->has_container = set->container != NULL;
-  if (set->container) frame->container = *set->container;
-  bounds_of(frame);
-  if (!set->container) {
-    memcpy(frame->container.min, frame->bounds_min, sizeof frame->bounds_min);
-    memcpy(frame->container.max, frame->bounds_max, sizeof frame->bounds_max);
-  }
-  SimSurface surface = surface_of(buffer, wide, buffer->axis, buffer->four, &buffer->lists);
-  if (!run_surface_stages(buffer, &surface, needs, set->particle_class, buffer->density, NULL, error)) return NULL;
-  sim_parallel_for(buffer->threads, set->count, scale_kernel, buffer);
-  return frame;
+  if (!sort_set(set, buffer, error)) return NULL;
+  bounds_of_set(set, frame);
+  return measure_set(buffer, needs, has_class, error) ? frame : NULL;
 }

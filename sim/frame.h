@@ -16,12 +16,13 @@ extern "C" {
 
 /// What a reader wants computed. A style of the renderer declares its needs; only these stages run.
 typedef enum SimNeed {
-  SIM_NEED_NOTHING = 0,          ///< positions, velocities, densities, colours: always there
+  SIM_NEED_NOTHING = 0,          ///< positions, ids, the grid, and what the world or the file has: always there
   SIM_NEED_CLASS = 1 << 0,       ///< particle_class: splash or aggregated, by the local density
   SIM_NEED_ANISOTROPY = 1 << 1,  ///< smoothed, ellipsoid (Yu & Turk 2013)
   SIM_NEED_SURFACE = 1 << 2,     ///< near_surface
   SIM_NEED_HEIGHT_FIELD = 1 << 3,///< height_field
-  SIM_NEED_ALL = (1 << 4) - 1
+  SIM_NEED_DENSITY = 1 << 4,     ///< density: a world's frame has it anyway
+  SIM_NEED_ALL = (1 << 5) - 1
 } SimNeed;
 
 /// Class of a particle. A particle file may bring its own; it is then used as it is.
@@ -95,10 +96,10 @@ typedef struct SimFrame {
   float particle_radius;       ///< m, half the spacing of the particles at rest
 
   // Particles, sorted by grid cell. The order changes from frame to frame: follow one by its id.
-  const uint32_t *id;          ///< (n), unique; written by particles_add or the file
+  const uint32_t *id;          ///< (n), unique; written by particles_add or the file; else the place in the file
   const float *position;       ///< m, (n, 3)
-  const float *velocity;       ///< m/s, (n, 3)
-  const float *density;        ///< kg/m³, (n); for particles from a file, estimated from their positions
+  const float *velocity;       ///< m/s, (n, 3); NULL for a file that has none
+  const float *density;        ///< kg/m³, (n); for particles from a file, estimated from their positions if needed, else NULL
   const float *colour;         ///< linear light, [0, 1], (n, 3); NULL when every particle has the default colour of water
   const float *radius;         ///< m, (n); only for files that bring radii, else NULL: use particle_radius
   float bounds_min[3], bounds_max[3]; ///< m, the box around all positions, or the container's where there are none

@@ -18,14 +18,36 @@ typedef struct SimCellSort {
   int32_t *cell_start;  ///< (cells + 1)
   int32_t *cell;        ///< (count): the cell of each particle, in the order before sorting
   uint32_t *order;      ///< (count): order[new] = old
-  int32_t *histogram;   ///< (chunks, cells)
+  int32_t *histogram;   ///< (chunks, cells) where there are several chunks
 } SimCellSort;
 
-/// Sort `count` finite positions into cells of at least `cell_size`. The grid covers the box around the positions; where
-/// that would take too many cells (a few particles far away) it covers the bulk of them, the others count to the nearest
-/// cell at its border, and as a last resort the cells grow. Whatever it chooses, two particles nearer than cell_size
-/// lie in the same cell or in cells that touch. false when memory runs out.
-bool sim_grid_sort(SimCellSort *sort, float *const position[3], int32_t count, float cell_size, int32_t threads);
+/// Where `count` positions lie: coordinate k of particle i is axis[k][stride·i], m.
+typedef struct SimPositions {
+  const float *axis[3];
+  int32_t stride;
+} SimPositions;
+
+/// Three arrays of one float a particle.
+static inline SimPositions sim_positions(float *const axis[3]) {
+  return (SimPositions){{axis[0], axis[1], axis[2]}, 1};
+}
+
+/// The cells that are wanted.
+typedef struct SimCells {
+  float size; ///< m: the smallest they may be
+  float each; ///< at most so many a particle, and 65,536 more. Water has about 1/8 of the smallest; a cell takes 4 bytes
+} SimCells;
+
+/// Cells of a world, which has few particles, but spray all over its container.
+static inline SimCells sim_cells(float size) {
+  return (SimCells){size, 4};
+}
+
+/// Sort `count` finite positions into cells. The grid covers the box around the positions; where that would take too many
+/// cells (a few particles far away) it covers the bulk of them, the others count to the nearest cell at its border, and as
+/// a last resort the cells grow. Whatever it chooses, two particles nearer than cells.size lie in the same cell or in cells
+/// that touch. false when memory runs out.
+bool sim_grid_sort(SimCellSort *sort, SimPositions places, int32_t count, SimCells cells, int32_t threads);
 void sim_grid_free(SimCellSort *sort);
 
 /// new_array[k] = old_array[order[k]] for floats and for 32-bit words.
@@ -44,6 +66,19 @@ typedef struct SimRange {
 static inline int32_t sim_grid_index(const SimGrid *grid, int axis, double coordinate) {
   double t = (coordinate - (double)grid->origin[axis]) * (1 / (double)grid->cell_size);
   return t > 0 ? t < grid->size[axis] - 1 ? (int32_t)t : grid->size[axis] - 1 : 0;
+}
+
+/// The cell of sorted particle i.
+static inline int32_t sim_grid_cell_of(const SimGrid *grid, int32_t i) {
+  int32_t low = 0, high = grid->size[0] * grid->size[1] * grid->size[2]; // cell_start[low] <= i < cell_start[high]
+  while (high - low > 1) {
+    int32_t middle = low + (high - low) / 2;
+    if (grid->cell_start[middle] <= i)
+      low = middle;
+    else
+      high = middle;
+  }
+  return low;
 }
 
 /// Ranges that hold every particle nearer than `radius` (at most two cells) to the point, empty ones left out.

@@ -123,7 +123,7 @@ static void to_axes_kernel(int32_t begin, int32_t end, const void *context) {
 bool sim_particles_sort(SimParticles *particles, SimCellSort *sort, float cell_size, int32_t threads) {
   MoveContext context = {.particles = particles};
   sim_particles_second_as_axes(particles, context.axes);
-  if (!sim_grid_sort(sort, context.axes, particles->count, cell_size, threads)) return false;
+  if (!sim_grid_sort(sort, sim_positions(context.axes), particles->count, sim_cells(cell_size), threads)) return false;
   context.order = sort->order;
   particles->shuffled = false;
   sim_parallel_for(threads, particles->count, to_first_kernel, &context);

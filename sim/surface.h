@@ -49,6 +49,19 @@ typedef struct SimSweepContext {
   SimCubic cubic; ///< of support SIM_SURFACE_REACH
 } SimSweepContext;
 
+/// The density alone, from the grid instead of lists: bytes as those of the sweep. `position` is (count, 3), in the
+/// grid's order; `density` (count).
+void sim_surface_density(const SimWide *wide, const SimGrid *grid, const float *position, int32_t count, float spacing,
+                         float *density, int32_t threads);
+
+/// What its kernel reads.
+typedef struct SimDensityContext {
+  const SimGrid *grid;
+  const float *position;
+  SimCubic cubic; ///< of support SIM_SURFACE_REACH
+  float *density;
+} SimDensityContext;
+
 /// Turn covariances into ellipsoids in place: (chunks, 6, SIM_CHUNK) becomes (count, 6), see SimFrame. `radius` is that of
 /// a particle, m.
 void sim_surface_ellipsoids(const SimWide *wide, int32_t count, float radius, float *covariance, int32_t threads);

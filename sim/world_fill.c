@@ -136,7 +136,8 @@ static bool sort_present(SimWorld *world, SimError *error) {
   int32_t count = world->particles.count;
   void *target[3];
   const void *source[3];
-  if (!sim_grid_sort(&world->fill_sort, world->particles.now.position, count, world->cubic.spacing, world->threads))
+  SimPositions places = sim_positions(world->particles.now.position);
+  if (!sim_grid_sort(&world->fill_sort, places, count, sim_cells(world->cubic.spacing), world->threads))
     return sim_fail(error, "out of memory");
   for (int k = 0; k < 3; k++) {
     if (!sim_reserve((void **)&world->fill_position[k], (size_t)count, sizeof(float)))

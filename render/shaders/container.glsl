@@ -44,3 +44,56 @@ vec3 wall_normal(vec3 p) {
   return vec3(0.0);
 #endif
 }
+
+// Water goes on behind the walls as its mirror image, so that it lies flat on them. A set of walls, a bit for each direction
+// that has one, stands for one image; a wall is a plane with its unit normal into the container, so that dot(n, p) + w is a
+// point's distance from it. That of a round glass is the plane that touches it.
+#if defined(CLIP_BOX)
+#define WALLS 3
+#elif defined(CLIP_GLASS)
+#define WALLS 2
+#else
+#define WALLS 0
+#endif
+
+#if WALLS > 0
+// The wall of a direction that is the nearest to a point.
+vec4 nearest_wall(int direction, vec3 p) {
+  vec3 low = p - container_min.xyz, high = container_max.xyz - p;
+  if (direction == 0) return vec4(0.0, 1.0, 0.0, -container_min.y);
+#ifdef CLIP_GLASS
+  vec2 middle = 0.5 * (container_min.xz + container_max.xz), from = p.xz - middle;
+  float radius = 0.5 * min(container_max.x - container_min.x, container_max.z - container_min.z);
+  vec2 n = -from / max(length(from), 1e-9);
+  return vec4(n.x, 0.0, n.y, radius - dot(n, middle));
+#else
+  if (direction == 1) return low.x < high.x ? vec4(1.0, 0.0, 0.0, -container_min.x) : vec4(-1.0, 0.0, 0.0, container_max.x);
+  return low.z < high.z ? vec4(0.0, 0.0, 1.0, -container_min.z) : vec4(0.0, 0.0, -1.0, container_max.z);
+#endif
+}
+
+vec4 wall[WALLS]; // the nearest of each direction, set by walls_within
+#endif
+
+// The set of walls that are nearer to a point than `reach`.
+int walls_within(vec3 p, float reach) {
+  int near = 0;
+#if WALLS > 0
+  for (int k = 0; k < WALLS; ++k) {
+    wall[k] = nearest_wall(k, p);
+    near |= int(dot(wall[k].xyz, p) + wall[k].w < reach) << k;
+  }
+#endif
+  return near;
+}
+
+// Image of a point and a direction in a set of walls, which are at right angles.
+void mirror(int walls, inout vec3 p, inout vec3 way) {
+#if WALLS > 0
+  for (int k = 0; k < WALLS; ++k) {
+    vec3 twice = wall[k].xyz * (2.0 * float(walls >> k & 1));
+    p -= (dot(wall[k].xyz, p) + wall[k].w) * twice;
+    way -= dot(wall[k].xyz, way) * twice;
+  }
+#endif
+}

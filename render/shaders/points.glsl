@@ -46,13 +46,13 @@ void main() {
   vec3 n = smooth_normal(s.xyz, p, 0.8 * on_top);
 
   // What comes through, and what the water scatters of sun and sky on the way.
-  vec3 extinction = absorption.rgb + SCATTER;
+  vec3 extinction = max(absorption.rgb + scattering.rgb, 1e-6);
   // A drop bends what is behind it away at its rim, which therefore looks darker: that is what shows its outline.
   float rim = clamp(dot(s.xyz, v), 0.0, 1.0);
   vec3 through = mix(0.55, 0.95, smoothstep(0.0, 0.7, rim)) * exp(-extinction * metres);
   float bead = 0.85 + 0.15 * dot(s.xyz, sun_direction.xyz);
   vec3 source = sun_colour.rgb * sunlit.direct * mix(1.0, sunlit.focus, 0.25) * bead * 0.18 + sky_average(n) * sunlit.diffuse * 0.9;
-  vec3 light = behind(n, metres, s.w) * through + SCATTER / extinction * (1.0 - through) * source;
+  vec3 light = behind(n, metres, s.w) * through + scattering.rgb / extinction * (1.0 - through) * source;
   light *= colour.rgb;
 
   // Froth: white in sun and sky.

@@ -20,6 +20,7 @@ layout(std140, binding = 1) uniform Params {
 #define body_end int[6](ends[0].x, ends[0].y, ends[0].z, ends[0].w, ends[1].x, ends[1].y)
 layout(binding = 8) uniform sampler2D background; // linear light, depth
 #include "scene.glsl"
+#include "scene_light.glsl"
 
 layout(binding = 0) uniform sampler2D water;      // aggregated: inverse depths of front and back, smoothed
 layout(binding = 1) uniform sampler2D water_front; // normal, depth
@@ -275,11 +276,6 @@ Surface leave(vec3 p, vec3 d, vec4 ball, inout int body) {
 
 // ---- Light ------------------------------------------------------------------------------------------------------------
 
-float schlick(float cosine) {
-  float x = 1.0 - clamp(cosine, 0.0, 1.0), x2 = x * x;
-  return absorption.a + (1.0 - absorption.a) * x2 * x2 * x;
-}
-
 // A ray on its way from the eye.
 struct Ray {
   vec3 p, d;            // where it is, and its unit direction, in view space
@@ -290,11 +286,8 @@ struct Ray {
 };
 
 // What the scene sends along a direction in the air.
-vec3 scene_light(vec3 p, vec3 d, float path) {
-  vec3 origin = eye.xyz + to_world(p), way = to_world(d);
-  Meeting meeting = meet_scene(origin, way);
-  return past_edges(origin, way, meeting.t, path,
-                    light_from(origin, way, meeting, pixel_at(path + min(meeting.t, 1e4))));
+vec3 scene_light_from(vec3 p, vec3 d, float path) {
+  return scene_light(eye.xyz + to_world(p), to_world(d), path);
 }
 
 Surface first_surface(vec3 ray, float behind) {
@@ -310,19 +303,12 @@ Surface first_surface(vec3 ray, float behind) {
   return first;
 }
 
-// The sun in the water: its disc, wider and dimmer than it is, of the same irradiance.
-vec3 sun_mirrored(vec3 p, vec3 d) {
-  const float WIDTH = 500.0;
-  float x = max(dot(to_world(d), sun_direction.xyz), 0.0);
-  vec3 disc = sun_colour.rgb * ((WIDTH + 1.0) / (2.0 * PI)) * pow(x, WIDTH);
-  return disc * sun_past_solids(eye.xyz + to_world(p));
-}
-
 // Eq. 6: what is mirrored at a surface, and on into the water.
 vec3 into(inout Ray ray, Surface surface, float index) {
   float mirror = schlick(-dot(ray.d, surface.normal));
   vec3 mirrored = reflect(ray.d, surface.normal);
-  vec3 light = ray.through * mirror * (scene_light(ray.p, mirrored, ray.path) + sun_mirrored(ray.p, mirrored));
+  vec3 light = ray.through * mirror * (scene_light_from(ray.p, mirrored, ray.path) +
+                                       sun_mirrored(eye.xyz + to_world(ray.p), to_world(mirrored)));
   ray.through *= 1.0 - mirror;
   ray.d = refract(ray.d, surface.normal, 1.0 / index);
   ray.body = surface.body;
@@ -395,7 +381,7 @@ vec3 out_of(inout Ray ray, Surface surface, float index) {
     aside.d = refract(mirrored, (surface.ball.xyz - aside.p) / surface.ball.w, index);
     aside.through *= 1.0 - mirror;
   }
-  return aside.through == vec3(0.0) ? vec3(0.0) : aside.through * scene_light(aside.p, aside.d, aside.path);
+  return aside.through == vec3(0.0) ? vec3(0.0) : aside.through * scene_light_from(aside.p, aside.d, aside.path);
 }
 
 void main() {
@@ -444,7 +430,7 @@ void main() {
   }
   // What is caught in the water after all: out after one more crossing as long as the last.
   if (ray.body != AIR) go(ray, crossing, crossing);
-  if (ray.through != vec3(0.0)) light += ray.through * scene_light(ray.p, ray.d, ray.path);
+  if (ray.through != vec3(0.0)) light += ray.through * scene_light_from(ray.p, ray.d, ray.path);
   result = vec4(mirrored_first + (light - mirrored_first) * coloured, 1.0);
   order = float(3 * first + second - 2);
 }

@@ -116,7 +116,10 @@ vec3 past_edges(vec3 origin, vec3 way, float end, float path, vec3 light) {
   vec3 from = abs(min(origin + way * t - container_min.xyz, container_max.xyz - origin - way * t));
   float nearest = min(max(from.x, from.y), min(max(from.y, from.z), max(from.x, from.z)));
   float pixel = pixel_at(path + t), half_width = max(0.0016 * container_max.w * 0.5, 0.7 * pixel);
-  float coverage = inside && t <= end + 1e-3 ? clamp((half_width - nearest) / pixel + 0.5, 0.0, 1.0) : 0.0;
+  // A curved or grazed surface shows more of the wall in a pixel: there the line is wider and fainter.
+  float footprint = clamp(fwidth(nearest), pixel, 16.0 * pixel), half_shown = max(half_width, 0.7 * footprint);
+  float coverage = inside && t <= end + 1e-3 ? clamp((half_shown - nearest) / footprint + 0.5, 0.0, 1.0) : 0.0;
+  coverage *= half_width / half_shown;
   vec3 edge = sky_average(vec3(0.0, 1.0, 0.0)) + sun_colour.rgb * 0.3;
   return mix(light, edge, coverage * 0.55);
 #else

@@ -6,7 +6,7 @@
 
 layout(std140, binding = 1) uniform Splat {
   vec4 splat;           // radius factor, water per chord, target size in pixels
-  vec4 splat_unused;
+  vec4 splat_more;      // 1 when every particle has a colour, 0 when all share one; -
 };
 
 #ifdef VERTEX_STAGE
@@ -26,7 +26,7 @@ void main() {
   vec4 s = spheres[index];
   float r = s.w * splat.x;
 #ifdef SURFACE
-  tint = colours[index];
+  tint = colours[index * int(splat_more.x)];
 #endif
 #ifdef SUN
   at = corner * r;

@@ -7,9 +7,6 @@ layout(binding = 6) uniform sampler2D sun_water;  // thickness, height towards t
 layout(binding = 7) uniform sampler2D sun_solid;  // height of the nearest obstacle towards the sun
 #endif
 
-// Scattering coefficient of the water, 1/m; chosen for the look of a clear pool.
-const vec3 SCATTER = vec3(0.14, 0.34, 0.36);
-
 vec2 sun_place(vec3 p) {
   return vec2(dot(p, sun_u.xyz) + sun_u.w, dot(p, sun_v.xyz) + sun_v.w);
 }
@@ -65,7 +62,7 @@ SunLight sun_light(vec3 p, vec3 past_solids) {
   if (water.z > 0.0 && water.x > 0.0) {
     light.below = water.y - dot(p, sun_direction.xyz);
     light.path = clamp(light.below, 0.0, water.x);
-    light.direct = exp(-(absorption.rgb + SCATTER) * light.path);
+    light.direct = exp(-(absorption.rgb + scattering.rgb) * light.path);
     light.focus = mix(1.0, water.w, light.path / water.x);
     light.diffuse = exp(-absorption.rgb * 0.7 * light.path);
   }

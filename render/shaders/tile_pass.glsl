@@ -3,8 +3,13 @@
 // rasteriser, whose stores to images cost more than the rest of a pass (render_tile_pass chooses). Tiles without water are
 // left as they were cleared.
 //
+// With SCALE, which RenderTilePass has as well, the target is that many times smaller than the picture.
+//
 // Maps of water hold the inverse depths of front and back, 0 where there is none.
 #define TILES 32
+#ifndef SCALE
+#define SCALE 1
+#endif
 
 #ifdef COMPUTE_STAGE
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -18,9 +23,9 @@ vec4 result_0, result_1;
 void pass(ivec2 at);
 
 void main() {
-  ivec2 at = ivec2(gl_GlobalInvocationID.xy), size = ivec2(lens.zw);
+  ivec2 at = ivec2(gl_GlobalInvocationID.xy), pixel = at * SCALE, size = ivec2(lens.zw);
   int row = (size.x + TILES - 1) / TILES;
-  if (any(greaterThanEqual(at, size)) || tiles[at.y / TILES * row + at.x / TILES] == 0u) return;
+  if (any(greaterThanEqual(pixel, size)) || tiles[pixel.y / TILES * row + pixel.x / TILES] == 0u) return;
   pass(at);
   imageStore(image_0, at, result_0);
 #if OUTPUTS > 1

@@ -19,6 +19,7 @@ void WIDE(sim_tension_force)(int32_t begin, int32_t end, const void *context);
 void WIDE(sim_vorticity_curl)(int32_t begin, int32_t end, const void *context);
 void WIDE(sim_vorticity_confine)(int32_t begin, int32_t end, const void *context);
 void WIDE(sim_surface_sweep)(int32_t begin, int32_t end, const void *context);
+void WIDE(sim_surface_density)(int32_t begin, int32_t end, const void *context);
 void WIDE(sim_surface_ellipsoids)(int32_t begin, int32_t end, const void *context);
 void WIDE(sim_surface_heights)(int32_t begin, int32_t end, const void *context);
 void WIDE(sim_machine_fma)(int32_t begin, int32_t end, const void *context);

@@ -39,18 +39,6 @@ static void rows_of_cell(const SimGrid *grid, int32_t cell, Rows *rows) {
     }
 }
 
-static int32_t cell_of(const SimGrid *grid, int32_t i) {
-  int32_t low = 0, high = grid->size[0] * grid->size[1] * grid->size[2]; // cell_start[low] <= i < cell_start[high]
-  while (high - low > 1) {
-    int32_t middle = low + (high - low) / 2;
-    if (grid->cell_start[middle] <= i)
-      low = middle;
-    else
-      high = middle;
-  }
-  return low;
-}
-
 // Copies in whole steps: what is written too much is written over by the next row, or never looked at.
 static void copy_candidates(const SimListContext *c, const Rows *rows, Cell *cell) {
   int32_t at = 0;
@@ -154,7 +142,7 @@ void WIDE(sim_list_block)(int32_t begin, int32_t end, const void *context) {
   int64_t pairs = 0;
   Place place;
   Chunk chunk;
-  enter_cell(c, cell_of(c->grid, begin), &place);
+  enter_cell(c, sim_grid_cell_of(c->grid, begin), &place);
   for (int32_t first = begin; first < end; first += SIM_CHUNK) {
     uint32_t slots = search_chunk(c, first, end, &place, &chunk);
     for (int lane = 0; lane < SIM_CHUNK; lane++) pairs += chunk.length[lane];

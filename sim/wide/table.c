@@ -17,6 +17,7 @@ const SimWide WIDE(sim_wide) = {
     .vorticity_curl = WIDE(sim_vorticity_curl),
     .vorticity_confine = WIDE(sim_vorticity_confine),
     .surface_sweep = WIDE(sim_surface_sweep),
+    .surface_density = WIDE(sim_surface_density),
     .surface_ellipsoids = WIDE(sim_surface_ellipsoids),
     .surface_heights = WIDE(sim_surface_heights),
     .machine_fma = WIDE(sim_machine_fma),

@@ -19,8 +19,9 @@ typedef struct SimWide {
   SimReduceKernel *pbf_start, *pbf_correct;
   SimKernel *sph_density, *sph_force;
   SimKernel *diffuse, *tension_normal, *tension_force, *vorticity_curl, *vorticity_confine;
-  // The kernels of the surface stages, see surface.h: SimSweepContext, SimEllipsoidContext, SimHeightContext.
-  SimKernel *surface_sweep, *surface_ellipsoids, *surface_heights;
+  // The kernels of the surface stages, see surface.h: SimSweepContext, SimDensityContext, SimEllipsoidContext,
+  // SimHeightContext.
+  SimKernel *surface_sweep, *surface_density, *surface_ellipsoids, *surface_heights;
   SimKernel *machine_fma;          ///< multiply-adds to measure the machine by (SimFmaContext, machine.h)
 } SimWide;
 

@@ -28,6 +28,15 @@ endif()
 add_test(NAME app_simulate_long COMMAND app_simulate_cli long WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
 set_tests_properties(app_simulate_long PROPERTIES LABELS long TIMEOUT 1800)
 
+# Files of very many particles. What memory the program takes is not to be known under a sanitizer.
+add_executable(make_particles make_particles_main.c make_particles.c)
+target_link_libraries(make_particles PRIVATE lido_flags m)
+lido_add_test(app_large_files SOURCES test_large_files.c make_particles.c LIBRARIES lido_test_runner lido_app)
+if(NOT LIDO_SANITIZE)
+  add_test(NAME app_large_files_long COMMAND app_large_files long WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+  set_tests_properties(app_large_files_long PROPERTIES LABELS long TIMEOUT 1800)
+endif()
+
 # Water at rest looks at rest.
 lido_add_test(app_flicker SOURCES test_flicker.c LIBRARIES lido_test_runner)
 add_test(NAME app_flicker_long COMMAND app_flicker long WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})

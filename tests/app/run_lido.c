@@ -1,4 +1,5 @@
 #define _XOPEN_SOURCE 700 // nftw
+#define _DEFAULT_SOURCE   // wait4
 
 #include "run_lido.h"
 
@@ -135,7 +136,8 @@ static int wait_for(LidoRun *run, pid_t process, int reader) {
   }
   int status;
   bool interrupted = false;
-  for (int waited = 0; waitpid(process, &status, WNOHANG) == 0; waited++) {
+  struct rusage usage = {0};
+  for (int waited = 0; wait4(process, &status, WNOHANG, &usage) == 0; waited++) {
     if (run->interrupt_when && !interrupted && is_there(run->interrupt_when)) {
       if (run->interrupt_twice) pause_ms(200);
       kill(process, SIGINT);
@@ -150,6 +152,7 @@ static int wait_for(LidoRun *run, pid_t process, int reader) {
     }
     pause_ms(1);
   }
+  run->peak = (int64_t)usage.ru_maxrss * 1024;
   if (run->interrupt_when && !interrupted) print_message("ended before it was interrupted: %s\n", run->text);
   return WIFSIGNALED(status) ? 1000 + WTERMSIG(status) : WEXITSTATUS(status);
 }

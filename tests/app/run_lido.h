@@ -35,6 +35,7 @@ typedef struct LidoRun {
   int code;         ///< exit code, or 1000 + the signal that ended it
   char text[16384]; ///< standard error
   int lines;        ///< of it
+  int64_t peak;     ///< bytes: the most memory that it had resident
 } LidoRun;
 
 /// Whether this machine has pseudo-terminals (/dev/pts); a bare chroot may not.

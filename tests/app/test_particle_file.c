@@ -253,7 +253,7 @@ static const struct {
     {VTK "POINTS", "line 5: POINTS: the number is missing"},
     {VTK "POINTS -3 float\n", "a whole number from 0 was expected, not '-3'"},
     {VTK "POINTS 1e3 float\n", "a whole number from 0 was expected, not '1e3'"},
-    {VTK "POINTS 99999999999 float\n0 0 0", "POINTS: 99999999999 is too many, at most 16777216 can be"},
+    {VTK "POINTS 99999999999 float\n0 0 0", "POINTS: 99999999999 is too many, at most 268435456 can be"},
     {VTK "POINTS 18446744073709551617 float\n0 0 0", "is too many"},
     {VTK "POINTS 16000000 float\n0 0 0", "48000000 values were announced, but the file is too short"},
     {VTKB "POINTS 16000000 float\n0000", "byte 88: POINTS: 48000000 values were announced, but the file ends after 1"},

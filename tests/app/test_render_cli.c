@@ -422,6 +422,8 @@ static void test_figures(void **state) {
   for (char *line = strtok(text, "\n"); line; line = strtok(NULL, "\n"), lines++) {
     cJSON *object = cJSON_Parse(line), *figures = cJSON_GetObjectItem(object, "figures"), *figure;
     assert_int_equal(cJSON_GetArraySize(figures), 6);
+    double bytes = cJSON_GetObjectItem(object, "buffer_bytes")->valuedouble;
+    assert_true(bytes >= 16 * cJSON_GetObjectItem(object, "particles")->valuedouble); // a sphere each
     assert_true(cJSON_GetObjectItem(figures, "aggregated")->valuedouble > 0.3);
     double sum = 0;
     cJSON_ArrayForEach(figure, figures) sum += figure->valuedouble;

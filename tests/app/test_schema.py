@@ -75,7 +75,7 @@ WRONG = [
     ("obstacles.4.keys.1.time", DELETE), ("obstacles.4.density", 0), ("camera.fov", 1), ("camera.fov", None), ("camera.eye", [1, 2]),
     ("environment.sky", "blue"), ("environment.floor_level", "x"), ("render.style", "cartoon"),
     ("render.points.scale", 6), ("render.points.size", 1), ("events.0.time", -1), ("events.0.gravity", [0, 0, 0]),
-    ("events.1.max", DELETE), ("events.3.name", "raycast"), ("events.4.type", "drag"),
+    ("events.1.max", DELETE), ("events.3.name", "cartoon"), ("events.4.type", "drag"),
     ("events.5.obstacle", None), ("events.5.position", DELETE), ("events.6.on", DELETE), ("events.6.emitter", 1.5),
 ]  # fmt: skip
 

@@ -2,18 +2,74 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
-TestWater test_water_create(const float *position, int32_t count, float particle_radius,
-                            const SimContainer *container) {
-  const SimParticleSet set = {.count = count, .position = position, .particle_radius = particle_radius};
+TestWater test_water_from_set(const SimParticleSet *set, const SimContainer *container) {
   TestWater water = {.buffer = sim_frame_buffer_create()};
   SimError error = {0};
   const SimFrame *frame =
-      sim_frame_from_particles(&set, SIM_NEED_CLASS | SIM_NEED_ANISOTROPY | SIM_NEED_SURFACE, 1, water.buffer, &error);
+      sim_frame_from_particles(set, SIM_NEED_CLASS | SIM_NEED_ANISOTROPY | SIM_NEED_SURFACE, 1, water.buffer, &error);
   if (frame == NULL) fail_msg("%s", error.message);
   water.frame = *frame;
   water.frame.has_container = container != NULL;
   if (container != NULL) water.frame.container = *container;
+  return water;
+}
+
+TestWater test_water_create(const float *position, int32_t count, float particle_radius,
+                            const SimContainer *container) {
+  const SimParticleSet set = {.count = count, .position = position, .particle_radius = particle_radius};
+  return test_water_from_set(&set, container);
+}
+
+// A column with some disorder, from a radius above the floor on.
+static void add_column(TestFrame *t, float radius, float level, float x, float z) {
+  const float wobble = 0.2f * radius;
+  for (float y = radius; y < level; y += 2 * radius) {
+    test_frame_add(t, x + wobble * sinf(91 * y + 37 * z), y + wobble * sinf(57 * x + 83 * z),
+                   z + wobble * sinf(71 * x + 47 * y));
+  }
+}
+
+TestWater test_water_pool(const SimContainer *container, float radius, float level) {
+  TestFrame *t = test_frame_create(20000, radius);
+  const float spacing = 2 * radius, middle = container->max[0] / 2;
+  if (container->shape == SIM_CONTAINER_BOX) {
+    for (float z = radius; z < container->max[2]; z += spacing)
+      for (float x = radius; x < container->max[0]; x += spacing) add_column(t, radius, level, x, z);
+  } else {
+    for (float ring = middle - radius; ring > 0; ring -= spacing) {
+      const int count = (int)(6.2831853f * ring / spacing);
+      for (int i = 0; i < count; ++i) {
+        const float a = 6.2831853f * (float)i / (float)count;
+        add_column(t, radius, level, middle + ring * cosf(a), middle + ring * sinf(a));
+      }
+    }
+  }
+  TestWater water = test_water_create(t->position, t->frame.count, radius, container);
+  test_frame_destroy(t);
+  return water;
+}
+
+TestWater test_water_settled(const SimContainer *container, float radius, float level) {
+  SimWorldDef def = sim_default_world_def();
+  SimBlockDef block = {.max = {0, level, 0}};
+  memcpy(block.min, container->min, sizeof block.min);
+  for (int k = 0; k < 3; k += 2) block.max[k] = container->max[k];
+  def.particle_radius = radius;
+  def.container = *container;
+  def.block_count = 1;
+  def.blocks = &block;
+  def.jitter = 0.3f;
+  SimError error = {0};
+  SimWorld *world = sim_world_create(&def, &error);
+  if (world == NULL || !sim_world_advance(world, 2, &error)) fail_msg("%s", error.message);
+  SimFrameBuffer *buffer = sim_frame_buffer_create();
+  const SimFrame *frame = sim_world_frame(world, SIM_NEED_NOTHING, buffer, &error);
+  if (frame == NULL) fail_msg("%s", error.message);
+  TestWater water = test_water_create(frame->position, frame->count, radius, container);
+  sim_frame_buffer_destroy(buffer);
+  sim_world_destroy(world);
   return water;
 }
 

@@ -14,6 +14,14 @@ typedef struct TestWater {
 
 /// `container` NULL: none.
 TestWater test_water_create(const float *position, int32_t count, float particle_radius, const SimContainer *container);
+/// The same of particles with colours or radii of their own.
+TestWater test_water_from_set(const SimParticleSet *set, const SimContainer *container);
+/// A pool at rest in a container that begins at the origin, filled up to a level (m): columns with some disorder, in rows,
+/// or in rings in a round container; the outermost lie a radius inside the walls.
+TestWater test_water_pool(const SimContainer *container, float radius, float level);
+/// The same as Lido's simulation leaves it: 2 s after a disordered lattice was let go. The level is that of the lattice, which
+/// fills the container's box or, in a round one, the square in it.
+TestWater test_water_settled(const SimContainer *container, float radius, float level);
 void test_water_destroy(TestWater *water);
 
 /// The camera's truth for a view.

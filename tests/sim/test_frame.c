@@ -1,12 +1,18 @@
 // Frames from a world and from particle sets: what is in them, and what is refused.
 #include "sim_test.h"
 
-static void refused(const SimParticleSet *set, const char *named) {
+#include "sim/surface.h"
+
+static void refused_with(unsigned needs, const SimParticleSet *set, const char *named) {
   SimError error = {""};
   SimFrameBuffer *buffer = sim_frame_buffer_create();
-  if (sim_frame_from_particles(set, SIM_NEED_ALL, 1, buffer, &error)) fail_msg("accepted although %s is wrong", named);
+  if (sim_frame_from_particles(set, needs, 1, buffer, &error)) fail_msg("accepted although %s is wrong", named);
   if (!strstr(error.message, named)) fail_msg("the message \"%s\" does not name %s", error.message, named);
   sim_frame_buffer_destroy(buffer);
+}
+
+static void refused(const SimParticleSet *set, const char *named) {
+  refused_with(SIM_NEED_ALL, set, named);
 }
 
 static void bad_sets_are_refused(void **state) {
@@ -19,7 +25,7 @@ static void bad_sets_are_refused(void **state) {
   position[4] = 1;
   set.count = -1;
   refused(&set, "count");
-  set.count = SIM_MAX_PARTICLES + 1;
+  set.count = SIM_MAX_SET_PARTICLES + 1;
   refused(&set, "count");
   set.count = 3, set.particle_radius = NAN;
   refused(&set, "particle_radius");
@@ -29,13 +35,15 @@ static void bad_sets_are_refused(void **state) {
   refused(&set, "positions");
 }
 
-// A million particles within one radius would take hours: it is an error, at once.
+// A million particles within one radius would take hours, here or where the frame is drawn: it is an error, at once.
 static void a_heap_is_refused(void **state) {
   (void)state;
   int32_t count = 1000000;
   float *position = calloc((size_t)count * 3, sizeof(float));
   SimParticleSet set = {.count = count, .position = position, .particle_radius = 0.1f};
   refused(&set, "crowded");
+  refused_with(SIM_NEED_DENSITY, &set, "crowded");
+  refused_with(SIM_NEED_NOTHING, &set, "crowded");
   free(position);
 }
 
@@ -108,7 +116,10 @@ static void attributes_follow_their_particles(void **state) {
   assert_null(frame->ellipsoid);
   assert_null(frame->near_surface);
   assert_int_equal(frame->height_field.size[0], 0);
-  assert_true(frame->velocity[5] == 0);
+  assert_null(frame->velocity);
+  assert_null(frame->density);
+  for (int i = 0; i < COUNT; i++) // the place in the set, where it brings no ids
+    assert_memory_equal(frame->position + 3 * i, position + 3 * frame->id[i], 3 * sizeof(float));
   sim_frame_buffer_destroy(buffer);
   free(position);
 }
@@ -231,6 +242,97 @@ static void the_grid_of_a_frame_holds_its_particles(void **state) {
   sim_world_destroy(world);
 }
 
+// Water, drops, a dense heap and a few particles far away: what a grid makes easy and hard.
+static float *hard_set(int32_t *count) {
+  enum { WATER = 20 * 14 * 18, DROPS = 900, HEAP = 700, FAR = 5 };
+  float *position = realloc(test_lattice(20, 14, 18, 0.05, 0.3, 7), 3 * sizeof(float) * (WATER + DROPS + HEAP + FAR));
+  srand(5);
+  for (int i = WATER; i < WATER + DROPS + HEAP + FAR; i++)
+    for (int k = 0; k < 3; k++) {
+      float share = (float)rand() / (float)RAND_MAX;
+      float size = i < WATER + DROPS ? 2 : i < WATER + DROPS + HEAP ? 0.07f : 300;
+      position[3 * i + k] = size * share;
+    }
+  *count = WATER + DROPS + HEAP + FAR;
+  return position;
+}
+
+// The density that nobody needs lists for is made without any, of the same bytes, on every instruction set.
+static void density_without_lists_is_the_same(void **state) {
+  (void)state;
+  SimFrameBuffer *one = sim_frame_buffer_create(), *two = sim_frame_buffer_create();
+  int32_t count;
+  float *position = hard_set(&count), *other = malloc((size_t)count * sizeof *other);
+  SimParticleSet set = {.count = count, .position = position, .particle_radius = 0.025f};
+  SimError error;
+  const SimFrame *frame = sim_frame_from_particles(&set, SIM_NEED_DENSITY | SIM_NEED_CLASS, 1, one, &error);
+  const SimFrame *alone = sim_frame_from_particles(&set, SIM_NEED_DENSITY, 2, two, &error);
+  assert_true(frame && alone);
+  assert_null(alone->particle_class);
+  assert_memory_equal(frame->id, alone->id, (size_t)count * sizeof *frame->id);
+  assert_memory_equal(frame->density, alone->density, (size_t)count * sizeof *frame->density);
+  float least = 1e9f, most = 0;
+  for (int32_t i = 0; i < count; i++) {
+    least = fminf(least, frame->density[i]);
+    most = fmaxf(most, frame->density[i]);
+  }
+  assert_true(least < 330 && most > 2000); // a drop alone, the heap
+  const char *const names[4] = {"avx512", "avx2", "sse2", "scalar"};
+  for (int k = 0; k < 4; k++) {
+    const SimWide *wide = sim_wide_named(names[k]);
+    if (!wide) continue;
+    sim_surface_density(wide, &frame->grid, frame->position, count, 0.05f, other, 2);
+    for (int32_t i = 0; i < count; i++) assert_true(other[i] * 1000 == frame->density[i]);
+  }
+  free(other);
+  free(position);
+  sim_frame_buffer_destroy(one);
+  sim_frame_buffer_destroy(two);
+}
+
+// Water of which only positions are needed: the frame's own, the grid, and what was sorted with.
+static void a_set_takes_little_memory(void **state) {
+  (void)state;
+  size_t before = sim_bytes_in_use();
+  float *position = test_lattice(60, 40, 50, 0.05, 0.3, 7);
+  SimParticleSet set = {.count = 60 * 40 * 50, .position = position, .velocity = position, .particle_radius = 0.025f};
+  SimError error;
+  for (unsigned needs = 0; needs <= SIM_NEED_DENSITY; needs += SIM_NEED_DENSITY) {
+    SimFrameBuffer *buffer = sim_frame_buffer_create();
+    assert_non_null(sim_frame_from_particles(&set, needs, 1, buffer, &error));
+    double each = (double)(sim_bytes_in_use() - before) / set.count;
+    // 12 each for position and velocity, 4 each for cell, order and perhaps density; a sixth of a cell
+    double most = needs ? 37.2 : 33.2;
+    if (each > most) fail_msg("%.1f bytes a particle", each);
+    sim_frame_buffer_destroy(buffer);
+  }
+  free(position);
+}
+
+// Drops far apart in a box of millions of cells: the cells grow, because there may be no more of them than one for two particles.
+static void a_scattered_set_takes_little_memory(void **state) {
+  (void)state;
+  enum { COUNT = 400000 };
+  float *position = malloc(3 * sizeof(float) * COUNT);
+  uint64_t seed = 9;
+  for (int i = 0; i < 3 * COUNT; i++) position[i] = (float)(40 * test_random(&seed));
+  SimParticleSet set = {.count = COUNT, .position = position, .particle_radius = 0.01f};
+  SimError error;
+  for (int32_t threads = 1; threads <= 4; threads += 3) {
+    SimFrameBuffer *buffer = sim_frame_buffer_create();
+    size_t before = sim_bytes_in_use();
+    const SimFrame *frame = sim_frame_from_particles(&set, SIM_NEED_NOTHING, threads, buffer, &error);
+    assert_non_null(frame);
+    double cells = (double)frame->grid.size[0] * frame->grid.size[1] * frame->grid.size[2];
+    assert_true(cells <= 65536 + COUNT / 2 && frame->grid.cell_start[(int64_t)cells] == COUNT);
+    double each = (double)(sim_bytes_in_use() - before) / COUNT;
+    // 12 for position, 4 each for cell and order, 2 for where the cells start; 65,536 cells more
+    if (each > 22 + 65536 * 4.0 / COUNT + 0.1) fail_msg("%.1f bytes a particle", each);
+    sim_frame_buffer_destroy(buffer);
+  }
+  free(position);
+}
+
 static void radius_is_estimated_from_the_spacing(void **state) {
   (void)state;
   float *lattice = test_lattice(12, 12, 12, 0.07, 0, 1);
@@ -252,6 +354,9 @@ int main(void) {
       cmocka_unit_test(frames_hold_what_is_needed),
       cmocka_unit_test(a_frame_stays_while_the_world_moves_on),
       cmocka_unit_test(the_grid_of_a_frame_holds_its_particles),
+      cmocka_unit_test(density_without_lists_is_the_same),
+      cmocka_unit_test(a_set_takes_little_memory),
+      cmocka_unit_test(a_scattered_set_takes_little_memory),
       cmocka_unit_test(radius_is_estimated_from_the_spacing),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -29,7 +29,7 @@ static Set random_set(int32_t count, double size, uint64_t seed) {
 // Sort, check that the sort is a permutation into the right cells, return the sorted set.
 static Set sorted_set(const Set *set, SimCellSort *sort, float cell, int32_t threads) {
   Set sorted = make_set(set->count);
-  assert_true(sim_grid_sort(sort, set->position, set->count, cell, threads));
+  assert_true(sim_grid_sort(sort, sim_positions(set->position), set->count, sim_cells(cell), threads));
   const void *source[3] = {set->position[0], set->position[1], set->position[2]};
   void *target[3] = {sorted.position[0], sorted.position[1], sorted.position[2]};
   sim_grid_gather(sort, set->count, threads, 3, source, target);
@@ -144,7 +144,7 @@ static void outliers_far_away(void **state) {
   set.position[1][7] = 4e4f, set.position[1][8] = 4e4f + 0.05f;
   check_set(&set, 0.1f, 2);
   SimCellSort sort = {0};
-  assert_true(sim_grid_sort(&sort, set.position, set.count, 0.1f, 1));
+  assert_true(sim_grid_sort(&sort, sim_positions(set.position), set.count, sim_cells(0.1f), 1));
   assert_true((double)sort.grid.size[0] * sort.grid.size[1] * sort.grid.size[2] <= 65536 + 4.0 * set.count);
   sim_grid_free(&sort);
   free_set(&set);
@@ -165,9 +165,9 @@ static void order_is_the_same_for_any_threads(void **state) {
   (void)state;
   Set set = random_set(30000, 1, 11);
   SimCellSort one = {0}, many = {0};
-  assert_true(sim_grid_sort(&one, set.position, set.count, 0.05f, 1));
+  assert_true(sim_grid_sort(&one, sim_positions(set.position), set.count, sim_cells(0.05f), 1));
   for (int threads = 2; threads <= 8; threads += 3) {
-    assert_true(sim_grid_sort(&many, set.position, set.count, 0.05f, threads));
+    assert_true(sim_grid_sort(&many, sim_positions(set.position), set.count, sim_cells(0.05f), threads));
     assert_memory_equal(one.order, many.order, sizeof(uint32_t) * (size_t)set.count);
   }
   sim_grid_free(&one);
