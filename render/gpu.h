@@ -38,6 +38,8 @@ typedef struct Gpu {
 } Gpu;
 
 bool gpu_create(Gpu *gpu, RenderError *error); ///< false: no OpenGL 4.5 core here
+/// For tests: what is created from now on draws on a software rasteriser as it would on hardware.
+void gpu_draw_like_hardware(bool on);
 void gpu_destroy(Gpu *gpu);
 void gpu_collect_errors(Gpu *gpu); ///< count what glGetError still holds
 bool gpu_fail(RenderError *error, const char *format, ...)
