@@ -30,7 +30,8 @@ typedef struct Raycast {
   GpuTexture filtered; // normal and depth, smoothed
   GpuTarget filter_target;
   GpuProgram behind_program;
-  GpuTexture behind; // metres of water behind a surface where they are few, its depth; half the resolution
+  GpuTexture
+      behind; // metres of water behind a surface on the bent ray where they are few, negative: mirrored; its depth; half the resolution
   GpuTarget behind_target;
   GpuProgram thickness_program;
   GpuTexture thickness; // metres of water along the ray, half the resolution
@@ -114,9 +115,10 @@ typedef struct FieldParams {
 static FieldParams field_params(const RenderPicture *picture) {
   const RenderRaycast *settings = &picture->settings->raycast;
   const float r = picture->frame->particle_radius;
-  return (FieldParams){render_grid_block(picture->frame),
-                       {settings->support * r, settings->iso, 2 * r, settings->normal_reach * r},
-                       {settings->blend_d, settings->blend_k, settings->blend_weight, 0}};
+  return (FieldParams){
+      render_grid_block(picture->frame),
+      {settings->support * r, settings->iso, 2 * r, settings->normal_reach * r},
+      {settings->blend_d, settings->blend_k, settings->blend_weight, picture->settings->refractive_index}};
 }
 
 static bool find_entries(Raycast *s, RenderPicture *picture, RenderError *error) {
@@ -209,7 +211,7 @@ static bool follow_rays(Raycast *s, RenderPicture *picture, RenderError *error) 
                         .desc = {"raycast: behind", "raycast_behind.glsl", render_container_define(picture->frame)},
                         .target = &s->behind_target,
                         .out = {&s->behind},
-                        .in = {.textures = {&s->surface},
+                        .in = {.textures = {&s->surface, &s->filtered},
                                .views = {&picture->particles.spheres, &s->grid.cell_start},
                                .params = &params,
                                .params_size = sizeof params},
@@ -225,7 +227,8 @@ typedef struct LightParams {
 
 static bool draw_light(Raycast *s, RenderPicture *picture, RenderError *error) {
   char defines[sizeof picture->defines + 256];
-  render_scene_defines(picture, defines, sizeof defines);
+  const int used = render_scene_defines(picture, defines, sizeof defines);
+  snprintf(defines + used, sizeof defines - (size_t)used, "%s", render_container_define(picture->frame));
   const GpuProgramDesc desc = {.label = "raycast: light", .file = "raycast_light.glsl", .defines = defines};
   if (!gpu_program_prepare(&s->light_program, &desc, error)) return false;
   const RenderTiles *tiles = &picture->tiles;

@@ -3,17 +3,17 @@
 #include "glass.glsl"
 #endif
 
-// Depths between which the ray from the eye, of length 1 along the view axis, is in the container.
-vec2 room(vec3 ray) {
+// Between which multiples of `ray` a line from a point is in the container.
+vec2 room_from(vec3 origin, vec3 ray) {
 #if defined(CLIP_BOX) || defined(CLIP_GLASS)
   vec3 inverse_ray = 1.0 / mix(ray, vec3(1e-9), lessThan(abs(ray), vec3(1e-9)));
-  vec3 a = (container_min.xyz - eye.xyz) * inverse_ray, b = (container_max.xyz - eye.xyz) * inverse_ray;
+  vec3 a = (container_min.xyz - origin) * inverse_ray, b = (container_max.xyz - origin) * inverse_ray;
   vec3 low = min(a, b), high = max(a, b);
   vec2 y = vec2(ray.y < 0.0 ? -FAR : a.y, ray.y < 0.0 ? a.y : FAR);
 #ifdef CLIP_GLASS
   Glass glass = glass_of_container();
   float radius = glass.radius * INSIDE, rr = dot(ray.xz, ray.xz);
-  vec2 from = eye.xz - glass.centre;
+  vec2 from = origin.xz - glass.centre;
   float middle = -dot(from, ray.xz) / max(rr, 1e-12);
   vec2 foot = from + ray.xz * middle;
   float h = sqrt(max((radius * radius - dot(foot, foot)) / max(rr, 1e-12), 0.0));
@@ -24,6 +24,11 @@ vec2 room(vec3 ray) {
 #else
   return vec2(-FAR, FAR);
 #endif
+}
+
+// Depths between which the ray from the eye, of length 1 along the view axis, is in the container.
+vec2 room(vec3 ray) {
+  return room_from(eye.xyz, ray);
 }
 
 // Unit normal of the wall that is nearest to a point, out of the container.
@@ -42,6 +47,16 @@ vec3 wall_normal(vec3 p) {
 #endif
 #else
   return vec3(0.0);
+#endif
+}
+
+// Is a ray in the water, of unit direction, mirrored where it meets a side wall at p, with air behind it?
+bool mirrored_by_wall(vec3 p, vec3 way, float index) {
+#if defined(CLIP_BOX) || defined(CLIP_GLASS)
+  vec3 n = wall_normal(p);
+  return n.y == 0.0 && dot(n, way) > 0.0 && refract(way, -n, index) == vec3(0.0);
+#else
+  return false;
 #endif
 }
 

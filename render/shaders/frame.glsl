@@ -26,6 +26,11 @@ vec3 view_ray(vec2 place) {
   return vec3(place * lens.xy, -1.0);
 }
 
+// An averaged normal may look away from the eye at a silhouette: turn it until the ray just comes in. Unit vectors.
+vec3 facing_eye(vec3 normal, vec3 way) {
+  return normalize(normal - way * max(dot(normal, way) + 0.02, 0.0));
+}
+
 vec3 to_world(vec3 view_vector) {
   return view_vector * mat3(world_to_view); // transposed: a rotation
 }

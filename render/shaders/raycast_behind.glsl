@@ -1,13 +1,18 @@
-// Metres of water behind the iso-surface, as far as it is thinner than a few spacings, where the particles splatted for the
-// thickness are too coarse. At half the picture's resolution: the ray of one pixel in four is followed.
+// Metres of water behind the iso-surface, along the ray that it bends, as far as they are few: there the particles splatted for
+// the thickness are too coarse. At half the picture's resolution: the ray of one pixel in four is followed.
+//
+// Where water lies on a side wall of its container and the ray meets it beyond the critical angle, it is mirrored. The ray
+// that goes on is then in the water's mirror image, which is what the field has behind the wall.
 #include "frame.glsl"
 #define SCALE 2
-#define OUTPUTS 1 // metres of water behind the surface, at most DEEP; depth of that surface, 0: there is none
+#define OUTPUTS 1 // metres of water behind the surface, at most DEEP, negative: with a mirror in between; depth of the surface, 0:
+                  // there is none
 #define FORMAT rg32f
 #include "tile_pass.glsl"
 #ifndef VERTEX_STAGE
 #include "raycast_field.glsl"
 layout(binding = 0) uniform sampler2D surface; // depth, negative where the ray comes out of water
+layout(binding = 1) uniform sampler2D normals; // outward unit normal
 
 const float DEEP = 8.0;        // spacings, also in raycast_light.glsl
 const vec4 LOOKS[2] = vec4[2](vec4(0.35, 0.8, 1.4, 2.2), vec4(3.2, 4.6, 6.2, DEEP));
@@ -21,11 +26,11 @@ ivec2 pixel_of(ivec2 at) {
   return at * 2;
 }
 
-// The depth at which the ray leaves the water that it comes into at one, or DEEP behind it.
-float way_out(float begin) {
-  float t = begin, f = 1e-3; // on the surface it is zero: the water is on this side
+// Metres to where the ray leaves the water at whose surface it begins, or DEEP.
+float way_out() {
+  float t = 0.0, f = 1e-3; // on the surface it is zero: the water is on this side
   for (int i = 0; i < 2; ++i) {
-    vec4 next = begin + spacing * LOOKS[i], ahead = above_iso(next);
+    vec4 next = spacing * LOOKS[i], ahead = above_iso(next);
     for (int k = 0; k < 4; ++k) {
       if (ahead[k] < 0.0) return narrow(vec2(t, next[k]), vec2(f, ahead[k]));
       t = next[k];
@@ -41,7 +46,14 @@ void pass(ivec2 at) {
   result_0 = vec4(0.0);
   if (begin <= 0.0) return;
   cast_through(pixel);
-  float end = room(way * along).y;
-  result_0 = vec4((min(way_out(begin), end) - begin) * along, begin, 0.0, 0.0);
+  vec3 seen = way, normal = facing_eye(texelFetch(normals, pixel, 0).xyz, seen);
+  cast_from(eye.xyz + way * along * begin, refract(seen, normal, 1.0 / blend.w));
+  float metres = way_out(), wall = room_from(origin, way).y;
+  bool mirrors = mirrored_by_wall(origin + way * wall, way, blend.w), wet = metres >= wall;
+  // Is there water at a wall that is farther than the ray was followed?
+  for (int i = 0; i < int(mirrors && metres >= 0.999 * DEEP * spacing && !wet); ++i) {
+    wet = above_iso(wall - spacing * vec4(0.6, 0.5, 0.4, 0.3)).x > 0.0;
+  }
+  result_0 = vec4(mirrors && wet ? -metres : min(metres, wall), begin, 0.0, 0.0);
 }
 #endif

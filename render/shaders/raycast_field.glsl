@@ -4,7 +4,7 @@ layout(std140, binding = 1) uniform Params {
   vec4 grid;            // origin, edge of a cell; m
   ivec4 cells;
   vec4 field_of;        // support h, m; iso-value; spacing of particles at rest, m; radius R of the normals, m
-  vec4 blend;           // d, k of Eq. 6; fixed weight of the PCA normal, negative: Eq. 6
+  vec4 blend;           // d, k of Eq. 6; fixed weight of the PCA normal, negative: Eq. 6; refractive index
 };
 #include "container.glsl"
 #include "neighbours.glsl"
@@ -42,23 +42,34 @@ vec4 field_along(vec3 p, vec3 way, vec4 t) {
   return sum * 8.0 / (PI * h * h * h);
 }
 
-// The ray through a pixel: unit direction, its metres in a metre of depth, the spacing of particles at rest in metres of depth.
-vec3 way;
+// A ray: where it begins, unit direction, its metres in one of the unit that places on it are told in, the spacing of particles at
+// rest in that unit.
+vec3 origin, way;
 float along, spacing;
 
+// That through a pixel; places are depths.
 void cast_through(ivec2 at) {
   vec3 ray = to_world(vec3(ray_of(at), -1.0));
+  origin = eye.xyz;
   along = length(ray);
   way = ray / along;
   spacing = field_of.z / along;
 }
 
-// The field less the iso-value at four depths on that ray in ascending order.
-vec4 above_iso(vec4 t) {
-  return field_along(eye.xyz, way, t * along) - field_of.y;
+// Places are metres from p.
+void cast_from(vec3 p, vec3 unit_way) {
+  origin = p;
+  way = unit_way;
+  along = 1.0;
+  spacing = field_of.z;
 }
 
-// The depth between t.x and t.y, where the field is f.x and f.y above the iso-value on different sides of it, at which it is
+// The field less the iso-value at four places on the ray in ascending order.
+vec4 above_iso(vec4 t) {
+  return field_along(origin, way, t * along) - field_of.y;
+}
+
+// The place between t.x and t.y, where the field is f.x and f.y above the iso-value on different sides of it, at which it is
 // just that: of five parts, the first that changes sides, and in it the parabola through one more point.
 float narrow(vec2 t, vec2 f) {
   float part = 0.2 * (t.y - t.x), begin = t.x;

@@ -1,5 +1,6 @@
 // Light from the iso-surface (Xiao, Zhang, Yang 2017, section 3.4): the sky and the scene in it, and what comes through it
 // along one refracted ray, which water takes away on a way as long as the water is thick (van der Laan, Green, Sainz 2009).
+// A side wall with water on it mirrors that ray beyond the critical angle, or the edges of a tank would fade.
 #include "frame.glsl"
 #define TILES 32
 #include "screen.glsl"
@@ -13,6 +14,7 @@ layout(std140, binding = 1) uniform Params {
 layout(binding = 8) uniform sampler2D background; // linear light, depth
 #include "scene.glsl"
 #include "scene_light.glsl"
+#include "container.glsl"
 
 layout(binding = 0) uniform sampler2D normals;    // outward unit normal, depth
 layout(binding = 1) uniform sampler2D colours;    // of the water, linear
@@ -23,17 +25,19 @@ layout(location = 0) out vec4 result;
 const float DEEP = 8.0; // spacings, also in raycast_behind.glsl
 
 // Metres of water behind the surface at a depth: those that rays close by were followed for, of the same surface. Where there
-// is more water than that, or none close by, what the particles add up to on the ray.
-float metres_behind(float depth) {
+// is more water than that, or none close by, what the particles add up to on the ray. `mirrors`: a wall in between does.
+float metres_behind(float depth, out bool mirrors) {
   vec2 at = gl_FragCoord.xy * 0.5 - 0.5, share = fract(at);
-  float sum = 0.0, weights = 0.0, splatted = textureLod(thickness, place * 0.5 + 0.5, 0.0).r;
+  float sum = 0.0, weights = 0.0, mirrored = 0.0, splatted = textureLod(thickness, place * 0.5 + 0.5, 0.0).r;
   for (int k = 0; k < 4; ++k) {
     ivec2 tap = clamp(ivec2(floor(at)) + ivec2(k & 1, k >> 1), ivec2(0), textureSize(behind, 0) - 1);
     vec2 there = texelFetch(behind, tap, 0).xy, near = mix(1.0 - share, share, vec2(k & 1, k >> 1));
     float w = (near.x * near.y + 1e-3) * max(1.0 - abs(there.y - depth) / (2.0 * optics.y), 0.0);
-    sum += w * there.x;
+    sum += w * abs(there.x);
+    mirrored += there.x < 0.0 ? w : 0.0;
     weights += w;
   }
+  mirrors = mirrored > 0.5 * weights;
   if (weights <= 0.0) return min(splatted, DEEP * optics.y);
   float metres = sum / weights;
   return metres > 0.999 * DEEP * optics.y ? max(metres, splatted) : metres;
@@ -51,10 +55,20 @@ vec3 through_water(vec3 light, float t, vec3 p, vec3 normal, vec3 tint) {
   return tint * (light * left + scattering.rgb / extinction * (1.0 - left) * source);
 }
 
-vec3 scene_through(vec3 p, vec3 way, float path, out float t) {
+// The light of the scene along a ray in the water, `path` metres from the eye; `mirrors`: the wall that it meets does. t: its way.
+vec3 scene_through(vec3 p, vec3 way, float path, bool mirrors, out float t) {
   Meeting meeting = meet_scene(p, way);
-  t = meeting.t;
-  return past_edges(p, way, t, path, light_from(p, way, meeting, pixel_at(path + min(t, 1e4))));
+  float wall = room_from(p, way).y;
+  t = 0.0;
+  for (int i = 0; i < int(mirrors && meeting.t > wall); ++i) {
+    t = wall;
+    p += way * wall;
+    way = reflect(way, wall_normal(p));
+    meeting = meet_scene(p, way);
+  }
+  path += t;
+  t += meeting.t;
+  return past_edges(p, way, meeting.t, path, light_from(p, way, meeting, pixel_at(path + min(meeting.t, 1e4))));
 }
 
 void main() {
@@ -62,10 +76,10 @@ void main() {
   if (s.w == 0.0) discard; // the background shows
   vec3 ray = to_world(view_ray(place)), way = normalize(ray);
   vec3 p = eye.xyz + ray * abs(s.w), normal = s.w > 0.0 ? s.xyz : -s.xyz;
-  // At a silhouette an averaged normal may look away from the eye.
-  normal = normalize(normal - way * max(dot(normal, way) + 0.02, 0.0));
+  normal = facing_eye(normal, way);
   float path = length(ray) * abs(s.w), index = optics.x;
-  float metres = metres_behind(s.w);
+  bool mirrors;
+  float metres = metres_behind(s.w, mirrors);
   vec4 solid = texelFetch(background, ivec2(gl_FragCoord.xy), 0);
   vec4 colour = texelFetch(colours, ivec2(gl_FragCoord.xy), 0);
   vec3 tint = mix(vec3(1.0), colour.rgb, 1.0 - exp(-metres / (0.5 * optics.y)));
@@ -79,7 +93,7 @@ void main() {
   } else if (s.w > 0.0) {
     float mirror = schlick(facing);
     vec3 bent = refract(way, normal, 1.0 / index);
-    vec3 behind = scene_through(p, bent, path, t);
+    vec3 behind = scene_through(p, bent, path, mirrors, t);
     vec3 inside = through_water(behind, min(t, metres), p, s.xyz, tint);
     result = vec4(mix(inside, scene_light(p, mirrored, path) + sun_mirrored(p, mirrored), mirror), 1.0);
   } else if (solid.a > 0.0 && -s.w > 0.999 * solid.a) {
@@ -92,7 +106,7 @@ void main() {
     vec3 out_there = bent == vec3(0.0) ? vec3(0.0) : scene_light(p, bent, path);
     vec3 light = out_there * (1.0 - mirror);
     float down;
-    vec3 mirrored_light = scene_through(p, mirrored, path, down);
+    vec3 mirrored_light = scene_through(p, mirrored, path, false, down);
     light += mirror * through_water(mirrored_light, min(down, 4.0 * path), p, vec3(0.0, 1.0, 0.0), vec3(1.0));
     result = vec4(through_water(light, path, p, vec3(0.0, 1.0, 0.0), colour.rgb), 1.0);
   }

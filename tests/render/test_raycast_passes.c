@@ -100,12 +100,26 @@ static int followed_pixel(const float *depth, int x, int y) {
   return -1;
 }
 
-// Errors of the metres of water, in spacings.
+// Snell's law where a ray comes into water; a normal that looks away from the eye is turned until the ray just comes in.
+static void bend(const double ray[3], const float normal[3], double index, double way[3]) {
+  double d[3], n[3], cosine = 0, length = 0;
+  for (int k = 0; k < 3; ++k) length += ray[k] * ray[k];
+  for (int k = 0; k < 3; ++k) cosine += (d[k] = ray[k] / sqrt(length)) * (double)normal[k];
+  const double away = fmax(cosine + 0.02, 0);
+  for (int k = 0; k < 3; ++k) n[k] = (double)normal[k] - away * d[k];
+  length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+  cosine = (d[0] * n[0] + d[1] * n[1] + d[2] * n[2]) / length;
+  const double down = sqrt(1 - (1 - cosine * cosine) / (index * index)) + cosine / index;
+  for (int k = 0; k < 3; ++k) way[k] = d[k] / index - down * n[k] / length;
+}
+
+// Errors of the metres of water along the bent ray, in spacings.
 static void expect_metres(Harness *harness, const char *what, const Cloud *cloud) {
   const RenderView view = {{0.5f, 0.35f, 1.1f}, {0, 0, 0}, 28};
   const RenderSettings settings = settings_of_raycast();
   TestWater water = cloud_water(cloud, CLOUD_PLAIN, NULL);
   float *depth = harness_layer(harness, "depth", 1, &water.frame, &view, &settings);
+  float *normal = harness_layer(harness, "normal", 3, &water.frame, &view, &settings);
   float *metres = harness_layer(harness, "behind", 1, &water.frame, &view, &settings);
   IsoWater twin = iso_water_create(&water.frame, &settings.raycast);
   double *off = malloc(PIXELS * sizeof *off), most = 0;
@@ -118,11 +132,12 @@ static void expect_metres(Harness *harness, const char *what, const Cloud *cloud
       continue;
     }
     const Ray ray = harness_ray(&view, WIDTH, HEIGHT, i % WIDTH, i / WIDTH);
-    const double *d = ray.direction, along = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-    const double in = (double)depth[i] + 1e-3 * twin.spacing;
-    const double out = -iso_crossing(&twin, ray.origin, d, in, INFINITY);
+    double p[3], way[3];
+    for (int k = 0; k < 3; ++k) p[k] = ray.origin[k] + (double)depth[i] * ray.direction[k];
+    bend(ray.direction, normal + 3 * i, (double)settings.refractive_index, way);
+    const double out = -iso_crossing(&twin, p, way, 1e-3 * twin.spacing, INFINITY);
     if (out <= 0) continue; // it only grazes the water
-    const double truth = fmin((out - (double)depth[i]) * along / twin.spacing, DEEP);
+    const double truth = fmin(out / twin.spacing, DEEP);
     off[pixels++] = fabs((double)shown / twin.spacing - truth);
     most = fmax(most, truth);
   }
@@ -135,6 +150,7 @@ static void expect_metres(Harness *harness, const char *what, const Cloud *cloud
   iso_water_destroy(&twin);
   free(off);
   free(depth);
+  free(normal);
   free(metres);
   test_water_destroy(&water);
 }

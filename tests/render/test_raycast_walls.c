@@ -248,6 +248,71 @@ static void test_like_twin(void **state) {
   expect_like_twin("from over the front", &over_front);
 }
 
+// ---- Mirrored by a wall ----------------------------------------------------------------------------------------------
+
+// The colour of the checker, or the sky, that a ray in the air sees; *edge: m, to the next edge of a square.
+static double light_in_air(const RenderSettings *s, const double p[3], const double d[3], int k, double *edge) {
+  if (d[1] >= 0) return (double)s->sky_horizon[k] + d[1] * ((double)s->sky_zenith[k] - (double)s->sky_horizon[k]);
+  const double t = -p[1] / d[1], tile = (double)s->tile_size, x = (p[0] + t * d[0]) / tile,
+               z = (p[2] + t * d[2]) / tile;
+  *edge = fmin(*edge, tile * fmin(fabs(x - round(x)), fabs(z - round(z))));
+  return (double)s->floor_colour[fmod(fabs(floor(x) + floor(z)), 2) != 0][k];
+}
+
+// In through the front at p, to the left wall, mirrored there, and down to the floor before the back: where that begins, and
+// its direction. false: it goes elsewhere.
+static bool by_left_wall(const double p[3], const double d[3], double index, double q[3], double way[3]) {
+  const double bent[3] = {d[0] / index, d[1] / index, -sqrt(1 - (d[0] * d[0] + d[1] * d[1]) / (index * index))};
+  const double t = ((double)wall_tank.min[0] - p[0]) / bent[0];
+  if (!(bent[0] < -1e-6) || index * index * (1 - bent[0] * bent[0]) < 1.02) return false;
+  for (int k = 0; k < 3; ++k) q[k] = p[k] + t * bent[k];
+  const double low = (double)wall_tank.min[1] + 0.02, high = (double)WALL_LEVEL - 3 * (double)SPACING;
+  if (q[1] < low || q[1] > high || q[2] < (double)wall_tank.min[2] + 0.02) return false;
+  for (int k = 0; k < 3; ++k) way[k] = k == 0 ? -bent[0] : bent[k];
+  const double down = (q[1] - (double)wall_tank.min[1]) / -way[1];
+  return way[1] < 0 && q[2] + down * way[2] > (double)wall_tank.min[2] + 0.02;
+}
+
+// Clear water: nothing is lost on the way.
+static void test_side_wall_mirrors(void **state) {
+  const Pools *pools = *state;
+  Harness harness = harness_open(CONTEXT_AUTO, WIDTH, HEIGHT);
+  RenderSettings settings = harness_pinned_settings();
+  settings.style = "raycast";
+  settings.tile_size = 0.2f;
+  for (int k = 0; k < 3; ++k) settings.absorption[k] = settings.scattering[k] = 0;
+  const RenderView view = {{0.75f, 0.6f, 1.9f}, {0.06f, 0.17f, 0.525f}, 9};
+  const double index = (double)settings.refractive_index, f0 = pow((index - 1) / (index + 1), 2);
+  uint8_t *rgb = harness_draw(&harness, &pools->tank.frame, &view, &settings);
+  double worst = 0;
+  int pixels = 0;
+  for (int i = 0; i < PIXELS; ++i) {
+    const Ray ray = harness_ray(&view, WIDTH, HEIGHT, i % WIDTH, i / WIDTH);
+    WallMeeting m;
+    if (!wall_meet_tank(&ray, 0, &m) || m.from_edge < 0 || m.normal[2] < 0.99) continue;
+    double p[3], d[3], q[3], way[3], length = 0, edge = 1;
+    for (int k = 0; k < 3; ++k) length += ray.direction[k] * ray.direction[k];
+    for (int k = 0; k < 3; ++k)
+      d[k] = ray.direction[k] / sqrt(length), p[k] = ray.origin[k] + m.depth * ray.direction[k];
+    if (!by_left_wall(p, d, index, q, way)) continue;
+    const double mirror = f0 + (1 - f0) * pow(1 + d[2], 5), back[3] = {d[0], d[1], -d[2]};
+    double off = 0;
+    for (int k = 0; k < 3; ++k) {
+      const double through = light_in_air(&settings, q, way, k, &edge),
+                   outside = light_in_air(&settings, p, back, k, &edge);
+      off = fmax(off, fabs(255 * ((1 - mirror) * through + mirror * outside) - (double)rgb[3 * i + k]));
+    }
+    if (edge < 0.02) continue;
+    worst = fmax(worst, off);
+    ++pixels;
+  }
+  print_message("mirrored by the left wall: %d pixels, off by at most %.2f of 255\n", pixels, worst);
+  assert_true(pixels > 200);
+  assert_true(worst < 1.5);
+  free(rgb);
+  harness_close(&harness);
+}
+
 static int open_pools(void **state) {
   Pools *pools = malloc(sizeof *pools);
   *pools = (Pools){test_water_pool(&wall_tank, WALL_RADIUS, WALL_LEVEL),
@@ -266,6 +331,6 @@ static int close_pools(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_flush), cmocka_unit_test(test_no_seam),
-                                     cmocka_unit_test(test_like_twin)};
+                                     cmocka_unit_test(test_like_twin), cmocka_unit_test(test_side_wall_mirrors)};
   return cmocka_run_group_tests(tests, open_pools, close_pools);
 }
