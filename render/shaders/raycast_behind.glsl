@@ -1,12 +1,12 @@
 // Metres of water behind the iso-surface, along the ray that it bends, as far as they are few: there the particles splatted for
 // the thickness are too coarse. At half the picture's resolution: the ray of one pixel in four is followed.
 //
-// Where water lies on a side wall of its container and the ray meets it beyond the critical angle, it is mirrored. The ray
-// that goes on is then in the water's mirror image, which is what the field has behind the wall.
+// Where the ray meets water on a side wall of its container, the wall may mirror it. What it is followed in behind the wall is
+// the water's mirror image, which is what the field has there.
 #include "frame.glsl"
 #define SCALE 2
-#define OUTPUTS 1 // metres of water behind the surface, at most DEEP, negative: with a mirror in between; depth of the surface, 0:
-                  // there is none
+#define OUTPUTS 1 // metres of water behind the surface, at most DEEP, negative: there is water at the side wall ahead; depth of
+                  // the surface, 0: there is none
 #define FORMAT rg32f
 #include "tile_pass.glsl"
 #ifndef VERTEX_STAGE
@@ -49,11 +49,11 @@ void pass(ivec2 at) {
   vec3 seen = way, normal = facing_eye(texelFetch(normals, pixel, 0).xyz, seen);
   cast_from(eye.xyz + way * along * begin, refract(seen, normal, 1.0 / blend.w));
   float metres = way_out(), wall = room_from(origin, way).y;
-  bool mirrors = mirrored_by_wall(origin + way * wall, way, blend.w), wet = metres >= wall;
-  // Is there water at a wall that is farther than the ray was followed?
-  for (int i = 0; i < int(mirrors && metres >= 0.999 * DEEP * spacing && !wet); ++i) {
+  bool at_side = wall < FAR && wall_normal(origin + way * wall).y == 0.0, wet = at_side && metres >= wall;
+  // A wall that is farther than the ray was followed is looked at by itself.
+  for (int i = 0; i < int(at_side && !wet && metres >= 0.999 * DEEP * spacing); ++i) {
     wet = above_iso(wall - spacing * vec4(0.6, 0.5, 0.4, 0.3)).x > 0.0;
   }
-  result_0 = vec4(mirrors && wet ? -metres : min(metres, wall), begin, 0.0, 0.0);
+  result_0 = vec4(wet ? -metres : min(metres, wall), begin, 0.0, 0.0);
 }
 #endif

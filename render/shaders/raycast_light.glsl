@@ -25,19 +25,19 @@ layout(location = 0) out vec4 result;
 const float DEEP = 8.0; // spacings, also in raycast_behind.glsl
 
 // Metres of water behind the surface at a depth: those that rays close by were followed for, of the same surface. Where there
-// is more water than that, or none close by, what the particles add up to on the ray. `mirrors`: a wall in between does.
-float metres_behind(float depth, out bool mirrors) {
+// is more water than that, or none close by, what the particles add up to on the ray. `wet`: there is water at the side wall ahead.
+float metres_behind(float depth, out bool wet) {
   vec2 at = gl_FragCoord.xy * 0.5 - 0.5, share = fract(at);
-  float sum = 0.0, weights = 0.0, mirrored = 0.0, splatted = textureLod(thickness, place * 0.5 + 0.5, 0.0).r;
+  float sum = 0.0, weights = 0.0, at_wall = 0.0, splatted = textureLod(thickness, place * 0.5 + 0.5, 0.0).r;
   for (int k = 0; k < 4; ++k) {
     ivec2 tap = clamp(ivec2(floor(at)) + ivec2(k & 1, k >> 1), ivec2(0), textureSize(behind, 0) - 1);
     vec2 there = texelFetch(behind, tap, 0).xy, near = mix(1.0 - share, share, vec2(k & 1, k >> 1));
     float w = (near.x * near.y + 1e-3) * max(1.0 - abs(there.y - depth) / (2.0 * optics.y), 0.0);
     sum += w * abs(there.x);
-    mirrored += there.x < 0.0 ? w : 0.0;
+    at_wall += there.x < 0.0 ? w : 0.0;
     weights += w;
   }
-  mirrors = mirrored > 0.5 * weights;
+  wet = at_wall > 0.5 * weights;
   if (weights <= 0.0) return min(splatted, DEEP * optics.y);
   float metres = sum / weights;
   return metres > 0.999 * DEEP * optics.y ? max(metres, splatted) : metres;
@@ -78,8 +78,8 @@ void main() {
   vec3 p = eye.xyz + ray * abs(s.w), normal = s.w > 0.0 ? s.xyz : -s.xyz;
   normal = facing_eye(normal, way);
   float path = length(ray) * abs(s.w), index = optics.x;
-  bool mirrors;
-  float metres = metres_behind(s.w, mirrors);
+  bool wet;
+  float metres = metres_behind(s.w, wet);
   vec4 solid = texelFetch(background, ivec2(gl_FragCoord.xy), 0);
   vec4 colour = texelFetch(colours, ivec2(gl_FragCoord.xy), 0);
   vec3 tint = mix(vec3(1.0), colour.rgb, 1.0 - exp(-metres / (0.5 * optics.y)));
@@ -93,6 +93,9 @@ void main() {
   } else if (s.w > 0.0) {
     float mirror = schlick(facing);
     vec3 bent = refract(way, normal, 1.0 / index);
+    float wall = room_from(p, bent).y;
+    bool mirrors = wet && mirrored_by_wall(p + bent * wall, bent, index);
+    metres = mirrors ? metres : min(metres, wall);
     vec3 behind = scene_through(p, bent, path, mirrors, t);
     vec3 inside = through_water(behind, min(t, metres), p, s.xyz, tint);
     result = vec4(mix(inside, scene_light(p, mirrored, path) + sun_mirrored(p, mirrored), mirror), 1.0);
