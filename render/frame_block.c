@@ -112,10 +112,9 @@ static void write_environment(RenderFrameBlock *block, const RenderPicture *pict
   const SimContainer *container = &picture->frame->container;
   const float ratio = (settings->refractive_index - 1) / (settings->refractive_index + 1);
   const float across = glm_vec3_distance((float *)(uintptr_t)box->min, (float *)(uintptr_t)box->max);
-  const float *f = settings->reflectance;
   set4(block->absorption, settings->absorption, ratio * ratio);
-  set4(block->scattering, settings->scattering, f[0] > 0 || f[1] > 0 || f[2] > 0);
-  set4(block->reflectance, f, 0);
+  set4(block->scattering, settings->scattering, 0);
+  set4(block->reflectance, settings->reflectance, 0);
   set4(block->sky_zenith, settings->sky_zenith, 0);
   set4(block->sky_horizon, settings->sky_horizon, 0);
   set4(block->floor_colour[0], settings->floor_colour[0], 0);

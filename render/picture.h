@@ -25,7 +25,7 @@ typedef struct RenderFrameBlock {
   float sun_u[4], sun_v[4]; // dot(p, xyz) + w is the place in the sun map, [0, 1]
   float sun_map[4];         // metres across the map in u and v; 1 − 1/n; –
   float absorption[4];      // 1/m; reflectance at normal incidence F0
-  float scattering[4];      // 1/m; 1 when the liquid is a metal, else 0
+  float scattering[4];      // 1/m
   float reflectance[4];     // of a metal at normal incidence; –
   float sky_zenith[4];      // of the gradient sky; –
   float sky_horizon[4];     // of the gradient sky; –

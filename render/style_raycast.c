@@ -37,7 +37,6 @@ typedef struct Raycast {
   GpuTexture thickness; // metres of water along the ray, half the resolution
   GpuTarget thickness_target;
   GpuProgram light_program;
-  const GpuTexture *shown; // normal or filtered
 } Raycast;
 
 static const RenderLayer layers[] = {
@@ -225,10 +224,22 @@ typedef struct LightParams {
   float optics[4];
 } LightParams;
 
+// Water is in its container, whose top is open: an eye beside or below that is in the air.
+static bool eye_may_be_within(const RenderPicture *picture) {
+  const SimContainer *box = &picture->frame->container;
+  const float *eye = picture->block.eye;
+  if (render_container_define(picture->frame)[0] == '\0') return true;
+  return eye[0] >= box->min[0] && eye[0] <= box->max[0] && eye[2] >= box->min[2] && eye[2] <= box->max[2] &&
+         eye[1] >= box->min[1];
+}
+
 static bool draw_light(Raycast *s, RenderPicture *picture, RenderError *error) {
   char defines[sizeof picture->defines + 256];
+  const float *mirrors = picture->settings->reflectance;
   const int used = render_scene_defines(picture, defines, sizeof defines);
-  snprintf(defines + used, sizeof defines - (size_t)used, "%s", render_container_define(picture->frame));
+  snprintf(defines + used, sizeof defines - (size_t)used, "%s%s%s", render_container_define(picture->frame),
+           mirrors[0] > 0 || mirrors[1] > 0 || mirrors[2] > 0 ? "#define METAL 1\n" : "",
+           eye_may_be_within(picture) ? "#define WITHIN 1\n" : "");
   const GpuProgramDesc desc = {.label = "raycast: light", .file = "raycast_light.glsl", .defines = defines};
   if (!gpu_program_prepare(&s->light_program, &desc, error)) return false;
   const RenderTiles *tiles = &picture->tiles;

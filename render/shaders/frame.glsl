@@ -8,7 +8,7 @@ layout(std140, binding = 0) uniform Frame {
   vec4 sun_u, sun_v;    // place in the sun map
   vec4 sun_map;         // metres across the map; 1 - 1/n, the bending of light at the surface
   vec4 absorption;      // 1/m; F0
-  vec4 scattering;      // 1/m; 1 when the liquid is a metal
+  vec4 scattering;      // 1/m
   vec4 reflectance;     // of a metal
   vec4 sky_zenith, sky_horizon;
   vec4 floor_colour[2];

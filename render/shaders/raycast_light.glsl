@@ -1,5 +1,6 @@
 // Light from the iso-surface (Xiao, Zhang, Yang 2017, section 3.4): the sky and the scene in it, and what comes through it
 // along one refracted ray, which water takes away on a way as long as the water is thick (van der Laan, Green, Sainz 2009).
+// METAL: a liquid that mirrors all of it. WITHIN: the eye may be in the water.
 // A side wall with water on it mirrors that ray beyond the critical angle, or the edges of a tank would fade.
 #include "frame.glsl"
 #define TILES 32
@@ -71,47 +72,57 @@ vec3 scene_through(vec3 p, vec3 way, float path, bool mirrors, out float t) {
   return past_edges(p, way, meeting.t, path, light_from(p, way, meeting, pixel_at(path + min(meeting.t, 1e4))));
 }
 
+#ifdef METAL
+// Nothing goes in.
+vec3 light_of(vec3 p, vec3 way, vec3 normal, float depth, float path) {
+  float x = 1.0 - clamp(-dot(normal, way), 0.0, 1.0), x2 = x * x;
+  vec3 mirrored = reflect(way, normal), share = reflectance.rgb + (1.0 - reflectance.rgb) * x2 * x2 * x;
+  return share * (scene_light(p, mirrored, path) + sun_mirrored(p, mirrored));
+}
+#else
+vec3 from_outside(vec3 p, vec3 way, vec3 normal, float depth, float path, vec3 colour) {
+  bool wet;
+  float metres = metres_behind(depth, wet), t;
+  vec3 tint = mix(vec3(1.0), colour, 1.0 - exp(-metres / (0.5 * optics.y)));
+  vec3 mirrored = reflect(way, normal), bent = refract(way, normal, 1.0 / optics.x);
+  float wall = room_from(p, bent).y;
+  bool mirrors = wet && mirrored_by_wall(p + bent * wall, bent, optics.x);
+  metres = mirrors ? metres : min(metres, wall);
+  vec3 behind = scene_through(p, bent, path, mirrors, t);
+  vec3 inside = through_water(behind, min(t, metres), p, texelFetch(normals, ivec2(gl_FragCoord.xy), 0).xyz, tint);
+  return mix(inside, scene_light(p, mirrored, path) + sun_mirrored(p, mirrored), schlick(-dot(normal, way)));
+}
+
+#ifdef WITHIN
+const vec3 UP = vec3(0.0, 1.0, 0.0);
+
+// A solid in the water; or out into the air and, beyond the critical angle, mirrored.
+vec3 from_within(vec3 p, vec3 way, vec3 normal, float depth, float path, vec3 colour) {
+  vec4 solid = texelFetch(background, ivec2(gl_FragCoord.xy), 0);
+  if (solid.a > 0.0 && depth > 0.999 * solid.a) return through_water(solid.rgb, path, p, UP, colour);
+  vec3 mirrored = reflect(way, normal), bent = refract(way, normal, optics.x);
+  float mirror = bent == vec3(0.0) ? 1.0 : schlick(-dot(bent, normal)), down;
+  vec3 out_there = bent == vec3(0.0) ? vec3(0.0) : scene_light(p, bent, path);
+  vec3 mirrored_light = scene_through(p, mirrored, path, false, down);
+  vec3 light = out_there * (1.0 - mirror) + mirror * through_water(mirrored_light, min(down, 4.0 * path), p, UP, vec3(1.0));
+  return through_water(light, path, p, UP, colour);
+}
+#endif
+
+vec3 light_of(vec3 p, vec3 way, vec3 normal, float depth, float path) {
+  vec3 colour = texelFetch(colours, ivec2(gl_FragCoord.xy), 0).rgb;
+#ifdef WITHIN
+  if (depth < 0.0) return from_within(p, way, normal, -depth, path, colour);
+#endif
+  return from_outside(p, way, normal, depth, path, colour);
+}
+#endif
+
 void main() {
   vec4 s = texelFetch(normals, ivec2(gl_FragCoord.xy), 0);
   if (s.w == 0.0) discard; // the background shows
   vec3 ray = to_world(view_ray(place)), way = normalize(ray);
-  vec3 p = eye.xyz + ray * abs(s.w), normal = s.w > 0.0 ? s.xyz : -s.xyz;
-  normal = facing_eye(normal, way);
-  float path = length(ray) * abs(s.w), index = optics.x;
-  bool wet;
-  float metres = metres_behind(s.w, wet);
-  vec4 solid = texelFetch(background, ivec2(gl_FragCoord.xy), 0);
-  vec4 colour = texelFetch(colours, ivec2(gl_FragCoord.xy), 0);
-  vec3 tint = mix(vec3(1.0), colour.rgb, 1.0 - exp(-metres / (0.5 * optics.y)));
-  float facing = -dot(normal, way), t;
-  vec3 mirrored = reflect(way, normal);
-  if (scattering.a > 0.0) {
-    // Metal: nothing goes in.
-    float x = 1.0 - clamp(facing, 0.0, 1.0), x2 = x * x;
-    vec3 share = reflectance.rgb + (1.0 - reflectance.rgb) * x2 * x2 * x;
-    result = vec4(share * (scene_light(p, mirrored, path) + sun_mirrored(p, mirrored)), 1.0);
-  } else if (s.w > 0.0) {
-    float mirror = schlick(facing);
-    vec3 bent = refract(way, normal, 1.0 / index);
-    float wall = room_from(p, bent).y;
-    bool mirrors = wet && mirrored_by_wall(p + bent * wall, bent, index);
-    metres = mirrors ? metres : min(metres, wall);
-    vec3 behind = scene_through(p, bent, path, mirrors, t);
-    vec3 inside = through_water(behind, min(t, metres), p, s.xyz, tint);
-    result = vec4(mix(inside, scene_light(p, mirrored, path) + sun_mirrored(p, mirrored), mirror), 1.0);
-  } else if (solid.a > 0.0 && -s.w > 0.999 * solid.a) {
-    // From within: a solid.
-    result = vec4(through_water(solid.rgb, path, p, vec3(0.0, 1.0, 0.0), colour.rgb), 1.0);
-  } else {
-    // From within: out into the air, or, beyond the critical angle, mirrored.
-    vec3 bent = refract(way, normal, index);
-    float mirror = bent == vec3(0.0) ? 1.0 : schlick(-dot(bent, normal));
-    vec3 out_there = bent == vec3(0.0) ? vec3(0.0) : scene_light(p, bent, path);
-    vec3 light = out_there * (1.0 - mirror);
-    float down;
-    vec3 mirrored_light = scene_through(p, mirrored, path, false, down);
-    light += mirror * through_water(mirrored_light, min(down, 4.0 * path), p, vec3(0.0, 1.0, 0.0), vec3(1.0));
-    result = vec4(through_water(light, path, p, vec3(0.0, 1.0, 0.0), colour.rgb), 1.0);
-  }
+  vec3 normal = facing_eye(s.w > 0.0 ? s.xyz : -s.xyz, way);
+  result = vec4(light_of(eye.xyz + ray * abs(s.w), way, normal, s.w, length(ray) * abs(s.w)), 1.0);
 }
 #endif

@@ -21,6 +21,20 @@ void harness_close(Harness *harness) {
   *harness = (Harness){0};
 }
 
+int harness_open_group(void **state, int32_t width, int32_t height) {
+  Harness *harness = malloc(sizeof *harness);
+  assert_non_null(harness);
+  *harness = harness_open(CONTEXT_AUTO, width, height);
+  *state = harness;
+  return 0;
+}
+
+int harness_close_group(void **state) {
+  harness_close(*state);
+  free(*state);
+  return 0;
+}
+
 RenderSettings harness_pinned_settings(void) {
   RenderSettings settings = render_default_settings();
   settings.sun = false;

@@ -22,6 +22,9 @@ typedef struct Harness {
 
 Harness harness_open(ContextKind kind, int32_t width, int32_t height);
 void harness_close(Harness *harness); ///< also asserts that GL reported nothing
+/// One for all tests of a group, as its state: to be called in its setup, and as its teardown.
+int harness_open_group(void **state, int32_t width, int32_t height);
+int harness_close_group(void **state);
 
 /// Gradient sky, checker floor at y = 0, no sun, no container, no tone map: a picture that can be computed.
 RenderSettings harness_pinned_settings(void);

@@ -285,16 +285,7 @@ static void test_changes(void **state) {
 }
 
 static int open_harness(void **state) {
-  Harness *harness = malloc(sizeof *harness);
-  *harness = harness_open(CONTEXT_AUTO, 70, 45);
-  *state = harness;
-  return 0;
-}
-
-static int close_harness(void **state) {
-  harness_close(*state);
-  free(*state);
-  return 0;
+  return harness_open_group(state, 70, 45);
 }
 
 int main(void) {
@@ -305,5 +296,5 @@ int main(void) {
       cmocka_unit_test(test_odd_containers),    cmocka_unit_test(test_all_in_one_place),
       cmocka_unit_test(test_odd_pictures),      cmocka_unit_test(test_changes),
   };
-  return cmocka_run_group_tests(tests, open_harness, close_harness);
+  return cmocka_run_group_tests(tests, open_harness, harness_close_group);
 }

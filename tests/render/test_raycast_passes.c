@@ -171,19 +171,10 @@ static void test_metres(void **state) {
 }
 
 static int open_harness(void **state) {
-  Harness *harness = malloc(sizeof *harness);
-  *harness = harness_open(CONTEXT_AUTO, WIDTH, HEIGHT);
-  *state = harness;
-  return 0;
-}
-
-static int close_harness(void **state) {
-  harness_close(*state);
-  free(*state);
-  return 0;
+  return harness_open_group(state, WIDTH, HEIGHT);
 }
 
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_filter), cmocka_unit_test(test_metres)};
-  return cmocka_run_group_tests(tests, open_harness, close_harness);
+  return cmocka_run_group_tests(tests, open_harness, harness_close_group);
 }
