@@ -1,5 +1,6 @@
 // What the parts of `lido bench` share: command_bench.c runs the scene, bench_scaling.c runs it again on other numbers of
-// threads, bench_report.c prints; bench_pictures.c makes a table of pictures of several sizes and numbers of particles.
+// threads, bench_report.c prints; bench_pictures.c makes a table of pictures of several sizes and numbers of particles,
+// bench_vary.c one of pictures with several values of keys.
 #ifndef LIDO_APP_BENCH_H
 #define LIDO_APP_BENCH_H
 
@@ -69,6 +70,8 @@ bool bench_scaling(Bench *bench, AppError *error);
 
 /// The table that --sizes and --particles ask for.
 bool bench_pictures(const Options *options, AppError *error);
+/// The table that --vary asks for, one of each scene.
+bool bench_vary(const Options *options, AppError *error);
 
 void bench_print_table(Bench *bench, const SimCounts *counts);
 void bench_print_json(Bench *bench, const SimCounts *counts);

@@ -6,9 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "app/bench.h"
-
-enum { DEFAULT_PICTURES = 3 };
+#include "app/bench_frames.h"
 
 typedef struct Pictures {
   const Options *options;
@@ -19,23 +17,24 @@ typedef struct Pictures {
   BenchSeries series[OPTIONS_MOST][OPTIONS_MOST]; // ms; of a number of particles, of a size
   int32_t particles[OPTIONS_MOST];                // as they turned out in the last frame
   char style[64];
+
+  Bench bench; // of the present number of particles
+  int present; // which one it is
 } Pictures;
 
 static bool open_pictures(Pictures *p, const Options *options, AppError *error) {
   p->options = options;
   p->size_count = options->size_count > 0 ? options->size_count : 1;
   p->particle_counts = options->particle_counts > 0 ? options->particle_counts : 1;
-  p->frames = options->last_frame >= 0 ? options->last_frame - options->first_frame + 1 : DEFAULT_PICTURES;
+  p->frames = bench_frames_counted(options);
   p->context = context_create_headless(options->context, error);
   if (!p->context) return false;
   for (int s = 0; s < p->size_count; s++) {
     const int *size = options->sizes[s];
     p->sizes[s][0] = options->size_count > 0 ? size[0] : options->width;
     p->sizes[s][1] = options->size_count > 0 ? size[1] : options->height;
-    RenderError render_error;
-    p->render[s] = render_create(p->sizes[s][0], p->sizes[s][1], &render_error);
-    if (!p->render[s]) return app_fail(error, APP_FAILED, "%s", render_error.message);
-    render_measure_passes(p->render[s], true);
+    p->render[s] = bench_render_create(p->sizes[s], error);
+    if (!p->render[s]) return false;
     for (int n = 0; n < p->particle_counts; n++) {
       p->series[n][s].value = malloc((size_t)p->frames * sizeof(double));
       if (!p->series[n][s].value) return app_fail(error, APP_FAILED, "out of memory");
@@ -73,32 +72,22 @@ static bool load_scene(const Options *options, int32_t wanted, Scene *scene, App
   return ok;
 }
 
-static bool draw_sizes(Pictures *p, int n, const Bench *bench, const SimFrame *frame, bool counted, AppError *error) {
-  for (int s = 0; s < p->size_count && !app_interrupted(); s++) {
-    RenderError render_error;
-    double start = bench_now_ms();
-    if (!render_draw(p->render[s], frame, &bench->view, &bench->settings, &render_error))
-      return app_fail(error, APP_FAILED, "%s", render_error.message);
-    RenderPassTime passes[BENCH_PASSES];
-    render_pass_times(p->render[s], passes, BENCH_PASSES); // waits for the GPU
-    BenchSeries *series = &p->series[n][s];
-    if (counted && series->count < p->frames) series->value[series->count++] = bench_now_ms() - start;
-  }
-  return true;
+static unsigned prepare(void *self, int index) {
+  Pictures *p = self;
+  bench_look(&p->bench.scene, p->options, index, &p->bench.settings, &p->bench.view);
+  snprintf(p->style, sizeof p->style, "%s", p->bench.settings.style);
+  return render_style_needs(p->bench.settings.style);
 }
 
-static bool run_frames(Pictures *p, int n, Bench *bench, AppError *error) {
-  int first = p->options->last_frame >= 0 ? p->options->first_frame : BENCH_WARM_UP;
-  for (int i = 0; i < first + p->frames && !app_interrupted(); i++) {
-    SimError sim_error;
-    if (!bench_advance(bench, bench->world, i, error)) return false;
-    if (i + 1 < first) continue;
-    const SimFrame *frame =
-        sim_world_frame(bench->world, render_style_needs(bench->settings.style), bench->buffer, &sim_error);
-    if (!frame) return app_fail(error, APP_FAILED, "%s", sim_error.message);
-    p->particles[n] = frame->count;
-    if ((i < first || first == 0) && !draw_sizes(p, n, bench, frame, false, error)) return false;
-    if (i >= first && !draw_sizes(p, n, bench, frame, true, error)) return false;
+static bool draw_sizes(void *self, const SimFrame *frame, double simulated_ms, bool counted, AppError *error) {
+  (void)simulated_ms;
+  Pictures *p = self;
+  p->particles[p->present] = frame->count;
+  for (int s = 0; s < p->size_count && !app_interrupted(); s++) {
+    double milliseconds;
+    if (!bench_draw(p->render[s], frame, &p->bench.view, &p->bench.settings, &milliseconds, error)) return false;
+    BenchSeries *series = &p->series[p->present][s];
+    if (counted && series->count < p->frames) series->value[series->count++] = milliseconds;
   }
   return true;
 }
@@ -106,21 +95,12 @@ static bool run_frames(Pictures *p, int n, Bench *bench, AppError *error) {
 static bool run_count(Pictures *p, int n, AppError *error) {
   const Options *options = p->options;
   int32_t wanted = options->particle_counts > 0 ? options->particles[n] : 0;
-  Bench bench = {.frame_seconds = 1 / options->fps};
-  bool ok = load_scene(options, wanted, &bench.scene, error);
-  if (ok) {
-    bench.settings = scene_render_settings(&bench.scene);
-    bench.view = scene_view(&bench.scene);
-    if (options->style) bench.settings.style = options->style;
-    snprintf(p->style, sizeof p->style, "%s", bench.settings.style);
-    bench.world = scene_world_create(&bench.scene, options->threads, error);
-    bench.buffer = sim_frame_buffer_create();
-    ok = bench.world && (bench.buffer || app_fail(error, APP_FAILED, "out of memory")) &&
-         run_frames(p, n, &bench, error);
-  }
-  sim_frame_buffer_destroy(bench.buffer);
-  sim_world_destroy(bench.world);
-  scene_free(&bench.scene);
+  BenchPainter painter = {.self = p, .prepare = prepare, .draw = draw_sizes};
+  p->bench = (Bench){0};
+  p->present = n;
+  bool ok = load_scene(options, wanted, &p->bench.scene, error) && bench_frames_open(&p->bench, options, error) &&
+            bench_frames_run(&p->bench, options, &painter, error);
+  bench_frames_close(&p->bench);
   return ok;
 }
 

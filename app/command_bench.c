@@ -10,7 +10,7 @@
 #include <string.h>
 #include <time.h>
 
-#include "app/bench.h"
+#include "app/bench_frames.h"
 #include "app/commands.h"
 #include "app/events.h"
 
@@ -134,9 +134,7 @@ static bool draw_frame(Bench *bench, const SimFrame *frame, bool counted, AppErr
 
 static bool open_bench(Bench *bench, const Options *options, AppError *error) {
   if (!scene_load(&bench->scene, options->source, options->sets, options->set_count, error)) return false;
-  bench->settings = scene_render_settings(&bench->scene);
-  bench->view = scene_view(&bench->scene);
-  if (options->style) bench->settings.style = options->style;
+  bench_look(&bench->scene, options, 0, &bench->settings, &bench->view);
   bench->frame_seconds = 1 / options->fps;
   bench->frames = options->last_frame >= 0 ? options->last_frame - options->first_frame + 1 : DEFAULT_FRAMES;
 
@@ -183,6 +181,7 @@ static bool measure_machine(Bench *bench, AppError *error) {
 }
 
 bool command_bench(const Options *options, AppError *error) {
+  if (options->vary_count > 0) return bench_vary(options, error);
   if (options->size_count > 0 || options->particle_counts > 0) return bench_pictures(options, error);
   Bench bench = {0};
   bool ok = open_bench(&bench, options, error);

@@ -13,7 +13,7 @@
   X(render, "SOURCE -o PATTERN", "Make pictures or a film without a window.") \
   X(simulate, "SCENE -o PATTERN", "Write the particles of every frame to files.") \
   X(check, "SCENE", "Check a scene and print it with every default filled in.") \
-  X(bench, "[SCENE]", "Measure the time of every stage and pass.") \
+  X(bench, "[SCENE ...]", "Measure the time of every stage and pass.") \
   X(list, "", "Name the scenes, styles and contexts that work here.")
 
 /// COMMAND_window, COMMAND_render …

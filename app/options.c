@@ -167,6 +167,16 @@ static bool read_set(Options *options, const char *value, char *cause, size_t si
   return true;
 }
 
+static bool read_vary(Options *options, const char *value, char *cause, size_t size) {
+  if (!vary_check(value, cause, size)) return false;
+  for (int i = 0; i < options->vary_count; i++)
+    if (vary_same_key(options->varies[i], value)) return because(cause, size, "this key varies already");
+  if (options->vary_count == VARY_MOST_KEYS) return because(cause, size, "no more than 8 keys can vary at once");
+  options->varies[options->vary_count++] = value;
+  if (vary_combination_count(options->varies, options->vary_count) <= VARY_MOST_COMBINATIONS) return true;
+  return because(cause, size, "these are more than 64 combinations");
+}
+
 static bool read_stats(Options *options, const char *value, char *cause, size_t size) {
   options->stats = value;
   return *value || because(cause, size, "must not be empty");
@@ -235,6 +245,7 @@ static const Option option_table[] = {
   {"size",      0,   "WxH",         DRAWS,             read_size,      "pixels of a picture, default 1280x720"},
   {"sizes",     0,   "WxH,...",     BENCH,             read_sizes,     "a table: time of a picture, for each size …"},
   {"particles", 0,   "N,...",       BENCH,             read_particles, "… and each number of particles (about)"},
+  {"vary",      0,   "KEY=A,B,...", BENCH,             read_vary,      "a table: pictures with each value of a scene's key"},
   {"frames",    0,   "N|A:B",       RUNS,              read_frames,    "the first N frames, or A up to B, without B"},
   {"fps",       0,   "F",           RUNS,              read_fps,       "frames per simulated second, default 60"},
   {"context",   0,   "NAME",        DRAWS,             read_context,   "where OpenGL is from: auto, glfw, egl, osmesa"},
@@ -271,8 +282,7 @@ typedef struct Parser {
   char **argv;
   const Option *given[OPTION_COUNT]; // options that were given, for the check against the command
   int given_count;
-  const char *words[2]; // what is no option: command and source, or source
-  int word_count;
+  int word_count; // of options->words: command and sources, or a source
 } Parser;
 
 /// Up to two strings from the command line go into the message, made printable.
@@ -329,8 +339,7 @@ static bool take_short(Parser *parser, const char *argument) {
 }
 
 static bool take_word(Parser *parser, const char *word) {
-  if (parser->word_count == 2) return refuse(parser, "%s: one argument too many", word, "");
-  parser->words[parser->word_count++] = word;
+  parser->options->words[parser->word_count++] = word; // room for one per argument
   return true;
 }
 
@@ -352,29 +361,58 @@ static bool take_arguments(Parser *parser) {
 
 // ---- What the whole must be -----------------------------------------------------------------------------------------
 
+/// Only a table of varied pictures is made of more than one scene.
+static bool check_word_count(const Parser *parser) {
+  const char *const *words = parser->options->words;
+  bool several = parser->options->vary_count > 0 && parser->word_count > 0 && strcmp(words[0], "bench") == 0;
+  return parser->word_count <= 2 || several || refuse(parser, "%s: one argument too many", words[2], "");
+}
+
 /// The first word is a command, or the scene for the window.
 static bool find_command(Parser *parser) {
   Options *options = parser->options;
+  const char *const *words = options->words;
   const char *names[COMMAND_COUNT];
   options->command = COMMAND_window;
-  options->source = parser->words[0];
+  options->source = words[0];
   for (int i = 0; i < COMMAND_COUNT; i++) {
     names[i] = command_table[i].name;
-    if (!parser->words[0] || strcmp(parser->words[0], names[i]) != 0) continue;
+    if (!words[0] || strcmp(words[0], names[i]) != 0) continue;
     options->command = i;
-    options->source = parser->words[1];
+    options->source = words[1];
     return true;
   }
   if (parser->word_count == 0) return true;
-  const char *nearest = text_nearest(parser->words[0], names, COMMAND_COUNT);
+  const char *nearest = text_nearest(words[0], names, COMMAND_COUNT);
   // A lone word that is neither a scene nor like a command is left to the scene's own message.
   char path[4096];
-  if (parser->word_count == 1 && (!nearest || scene_find(parser->words[0], path, sizeof path))) return true;
-  if (nearest) return refuse(parser, "%s: unknown command, did you mean \"%s\"?", parser->words[0], nearest);
-  return refuse(parser, "%s: unknown command (see lido --help)", parser->words[0], "");
+  if (parser->word_count == 1 && (!nearest || scene_find(words[0], path, sizeof path))) return true;
+  if (nearest) return refuse(parser, "%s: unknown command, did you mean \"%s\"?", words[0], nearest);
+  return refuse(parser, "%s: unknown command (see lido --help)", words[0], "");
 }
 
-static bool check_against_command(const Parser *parser) {
+/// What cannot be asked for together with --vary.
+static bool check_vary(const Parser *parser) {
+  const Options *options = parser->options;
+  if (options->vary_count > 0 && (options->size_count > 0 || options->particle_counts > 0))
+    return refuse(parser, "--vary: not together with --%s", options->size_count > 0 ? "sizes" : "particles", "");
+  for (int k = 0; options->style && k < options->vary_count; k++)
+    if (vary_same_key(options->varies[k], "render.style="))
+      return refuse(parser, "--vary render.style: not together with --style", "", "");
+  return true;
+}
+
+static void name_sources(Parser *parser) {
+  Options *options = parser->options;
+  bool commanded = options->words[0] && options->source != options->words[0];
+  options->sources = options->words + (commanded ? 1 : 0);
+  options->source_count = parser->word_count - (commanded ? 1 : 0);
+  if (options->source_count > 0) return;
+  options->sources[0] = options->source; // the default, or NULL
+  options->source_count = options->source ? 1 : 0;
+}
+
+static bool check_against_command(Parser *parser) {
   Options *options = parser->options;
   const char *name = command_table[options->command].name;
   int bit = 1 << options->command;
@@ -390,11 +428,13 @@ static bool check_against_command(const Parser *parser) {
                   options->command == COMMAND_render     ? "render SOURCE -o PATTERN"
                   : options->command == COMMAND_simulate ? "simulate SCENE -o PATTERN"
                                                          : "check SCENE");
-  if (options->source && !*options->source) return refuse(parser, "lido %s: the name of the scene is empty", name, "");
+  name_sources(parser);
+  for (int i = 0; i < options->source_count; i++)
+    if (!*options->sources[i]) return refuse(parser, "lido %s: the name of the scene is empty", name, "");
   if (!options->output && bit & (RENDER | SIMULATE))
     return refuse(parser, "lido %s: needs -o PATTERN, like -o %s", name,
                   options->command == COMMAND_render ? "out/f_%05d.png" : "out/p_%05d.vtk");
-  return true;
+  return check_vary(parser);
 }
 
 /// --style and --seed change the scene like a --set, and win over one.
@@ -412,9 +452,10 @@ static void add_sets(Options *options) {
 bool options_parse(Options *options, int argc, char **argv, AppError *error) {
   *options = (Options){.width = 1280, .height = 720, .last_frame = -1, .fps = 60, .context = CONTEXT_AUTO};
   options->sets = calloc((size_t)argc + 2, sizeof *options->sets);
-  if (!options->sets) return app_fail(error, APP_FAILED, "out of memory");
+  options->words = calloc((size_t)argc + 2, sizeof *options->words);
+  if (!options->sets || !options->words) return app_fail(error, APP_FAILED, "out of memory");
   Parser parser = {.options = options, .error = error, .argc = argc, .argv = argv};
-  if (!take_arguments(&parser) || !find_command(&parser)) return false;
+  if (!take_arguments(&parser) || !check_word_count(&parser) || !find_command(&parser)) return false;
   if (options->help || options->version) return true;
   if (!check_against_command(&parser)) return false;
   add_sets(options);
@@ -423,7 +464,8 @@ bool options_parse(Options *options, int argc, char **argv, AppError *error) {
 
 void options_free(Options *options) {
   free(options->sets);
-  options->sets = NULL;
+  free(options->words);
+  options->sets = options->words = options->sources = NULL;
 }
 
 // ---- Help -----------------------------------------------------------------------------------------------------------
@@ -436,12 +478,18 @@ static void print_option(FILE *file, const Option *option) {
   fprintf(file, "  %-28s %s\n", left, option->help);
 }
 
-static void print_patterns(FILE *file, int command) {
+static void print_notes(FILE *file, int command) {
   if (command == COMMAND_render)
     fprintf(file, "\nSOURCE is a scene, or particle files such as 'run/p_%%05d.vtk' (.vtk or .ply).\n"
                   "PATTERN is 'out/f_%%05d.png' for pictures, 'film.mp4' for a film (needs ffmpeg),\n"
                   "or '-' for raw RGB24 frames on the standard output.\n");
   if (command == COMMAND_simulate) fprintf(file, "\nPATTERN is 'out/p_%%05d.vtk' or 'out/p_%%05d.ply'.\n");
+  if (command == COMMAND_bench)
+    fprintf(file,
+            "\nTables are of the pictures of --frames, of three where it is not given. --vary may be given for\n"
+            "several keys of render, light, environment and camera, and for several scenes: every frame is\n"
+            "simulated once and drawn with every combination of the values, %d of them at most.\n",
+            VARY_MOST_COMBINATIONS);
 }
 
 static void print_command_help(FILE *file, int command) {
@@ -450,7 +498,7 @@ static void print_command_help(FILE *file, int command) {
           *arguments && command != COMMAND_window ? " " : "", arguments, command_table[command].summary);
   for (int i = 0; i < OPTION_COUNT; i++)
     if (option_table[i].commands & 1 << command) print_option(file, &option_table[i]);
-  print_patterns(file, command);
+  print_notes(file, command);
 }
 
 void options_print_help(FILE *file, int command) {

@@ -8,6 +8,7 @@
 
 #include "app/app.h"
 #include "app/context.h"
+#include "app/vary.h"
 
 enum { OPTIONS_MOST = 8 }; ///< values in a list
 
@@ -15,6 +16,8 @@ enum { OPTIONS_MOST = 8 }; ///< values in a list
 typedef struct Options {
   int command;                 ///< CommandIndex of commands.h
   const char *source;          ///< SCENE or SOURCE; SCENE_DEFAULT for window and bench when none is given
+  const char **sources;        ///< (source_count) `source` first; more than one only with --vary
+  int source_count;
   const char *output;          ///< -o: pattern, film or "-"
   const char *style;           ///< --style, or NULL: the scene's
   int width, height;           ///< --size, default 1280x720
@@ -22,6 +25,8 @@ typedef struct Options {
   int size_count;
   int32_t particles[OPTIONS_MOST]; ///< (particle_counts) --particles
   int particle_counts;
+  const char *varies[VARY_MOST_KEYS]; ///< (vary_count) "key.path=a,b,c" of --vary
+  int vary_count;
   int first_frame, last_frame; ///< --frames N: 0 … N − 1, A:B: A … B − 1; last_frame −1: to the end of the scene
   double fps;                  ///< --fps, default 60: a frame stands for 1/fps simulated seconds
   ContextKind context;         ///< --context, default CONTEXT_AUTO
@@ -39,6 +44,7 @@ typedef struct Options {
   bool help, version;          ///< print that and end
 
   char style_set[160], seed_set[64]; ///< text behind entries of `sets`
+  const char **words;                ///< what is no option, and a NULL
 } Options;
 
 /// Parse the command line. false and *error (APP_BAD_INPUT; APP_FAILED when memory runs out). Free it either way.

@@ -1,4 +1,5 @@
 // lido bench through the program: its JSON is JSON, and its figures fit each other.
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -97,7 +98,109 @@ static void table_of_pictures(void **state) {
   folder_remove(folder);
 }
 
+static void check_varied_row(const cJSON *row, const cJSON *first, double scale, const char *sky) {
+  const cJSON *values = cJSON_GetObjectItem(row, "values");
+  assert_true(number(values, "render.points.scale") == scale);
+  assert_string_equal(cJSON_GetObjectItem(values, "environment.sky")->valuestring, sky);
+  assert_string_equal(cJSON_GetObjectItem(row, "style")->valuestring, "points");
+  assert_true(number(row, "least_ms") > 0 && number(row, "median_ms") >= number(row, "least_ms"));
+  assert_true(number(row, "with_simulation_median_ms") > number(row, "median_ms"));
+  if (row == first) assert_true(number(row, "ratio") == 1 && number(row, "with_simulation_ratio") == 1);
+  // One frame was counted: the medians are its own times.
+  double ratio = number(row, "median_ms") / number(first, "median_ms");
+  double with_simulation = number(row, "with_simulation_median_ms") / number(first, "with_simulation_median_ms");
+  assert_true(fabs(number(row, "ratio") - ratio) < 1e-3 * ratio);
+  assert_true(fabs(number(row, "with_simulation_ratio") - with_simulation) < 1e-3 * with_simulation);
+}
+
+// For each scene a row of each combination, the last key changing first; times of one frame, so ratios can be checked.
+static void varied_pictures(void **state) {
+  (void)state;
+  char folder[256];
+  folder_make(folder);
+  const char *scene = in(folder, "scene.json"), *again = in(folder, "again.json"), *output = in(folder, "bench.json");
+  file_put_text(scene, SMALL_SCENE SMALL_END);
+  file_put_text(again, SMALL_SCENE SMALL_END);
+  LidoRun run = {.stdout_to = output};
+  LIDO(&run, "bench", "--json", "--style", "points", "--vary", "render.points.scale=1,2", scene, "--vary",
+       "environment.sky=clear,gradient", again, "--size", "40x30", "--frames", "2:3");
+  assert_int_equal(run.code, 0);
+  cJSON *report = read_report(output);
+  assert_true(number(report, "pictures") == 1 && number(report, "width") == 40 && number(report, "height") == 30);
+  const cJSON *scenes = cJSON_GetObjectItem(report, "scenes");
+  assert_int_equal(cJSON_GetArraySize(scenes), 2);
+  for (int s = 0; s < 2; s++) {
+    const cJSON *table = cJSON_GetArrayItem(scenes, s), *times = cJSON_GetObjectItem(table, "times");
+    assert_string_equal(cJSON_GetObjectItem(table, "scene")->valuestring, s == 0 ? scene : again);
+    assert_true(number(table, "particles") > 0 && number(table, "simulation_median_ms") > 0);
+    assert_int_equal(cJSON_GetArraySize(times), 4);
+    for (int k = 0; k < 4; k++)
+      check_varied_row(cJSON_GetArrayItem(times, k), times->child, k < 2 ? 1 : 2, k % 2 ? "gradient" : "clear");
+  }
+  cJSON_Delete(report);
+  folder_remove(folder);
+}
+
+// A line of the printed table for each combination, the first with ratios of 1.
+static void varied_table(void **state) {
+  (void)state;
+  char folder[256], first[40], last[40];
+  folder_make(folder);
+  const char *scene = in(folder, "scene.json"), *output = in(folder, "bench.txt");
+  file_put_text(scene, SMALL_SCENE SMALL_END);
+  LidoRun run = {.stdout_to = output};
+  LIDO(&run, "bench", "--vary", "light.colour=[1,1,1],[2,2,2]", "--vary", "render.style=points,refraction", "--size",
+       "40x30", "--frames", "2", scene);
+  assert_int_equal(run.code, 0);
+  char *text = (char *)file_get(output, &(size_t){0});
+  char *row = strstr(text, "[1,1,1] ");
+  double picture, ratio, total, total_ratio;
+  assert_non_null(row);
+  assert_int_equal(sscanf(row, "%39s %39s %lf %lf %lf %lf", first, last, &picture, &ratio, &total, &total_ratio), 6);
+  assert_string_equal(last, "points");
+  assert_true(picture > 0 && total >= picture && ratio == 1 && total_ratio == 1);
+  row = strrchr(text, '[');
+  assert_non_null(row);
+  assert_int_equal(sscanf(row, "%39s %39s", first, last), 2);
+  assert_string_equal(first, "[2,2,2]");
+  assert_string_equal(last, "refraction");
+  assert_string_equal(strchr(row, '\n'), "\n"); // it is the last line
+  free(text);
+  folder_remove(folder);
+}
+
+// Bad values are told as --set tells them, of the last scene too, and before anything is drawn.
+static void values_that_cannot_vary(void **state) {
+  (void)state;
+  char folder[256];
+  folder_make(folder);
+  const char *scene = in(folder, "scene.json"), *none = in(folder, "none.json"), *output = in(folder, "bench.txt");
+  file_put_text(scene, SMALL_SCENE SMALL_END);
+  const struct {
+    const char *vary, *second, *message;
+  } cases[] = {
+      {"render.points.scal=1,2", scene, "--set render.points.scal=1: render.points.scal: unknown key"},
+      {"render.points.scale=1,9", scene, "--set render.points.scale=9: render.points.scale: must be in [0.1, 5]"},
+      {"render.refraction.smoothing=none,blur", scene, "render.refraction.smoothing: must be one of"},
+      {"render.points.scale=1,2", none, "none.json"},
+      {"simulation.cfl=0.5,1", scene, "--vary: only keys that change nothing but the picture"},
+  };
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    size_t size;
+    LidoRun run = {.stdout_to = output};
+    LIDO(&run, "bench", "--frames", "1", "--size", "40x30", "--vary", cases[i].vary, scene, cases[i].second);
+    check_said(&run, 2, cases[i].message);
+    free(file_get(output, &size));
+    assert_int_equal(size, 0);
+  }
+  folder_remove(folder);
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(figures_fit_each_other), cmocka_unit_test(table_of_pictures)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(figures_fit_each_other),  cmocka_unit_test(table_of_pictures),
+      cmocka_unit_test(varied_pictures),         cmocka_unit_test(varied_table),
+      cmocka_unit_test(values_that_cannot_vary),
+  };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -106,6 +106,56 @@ static void test_values(void **state) {
   options_free(&o);
 }
 
+static void test_scenes_of_a_varied_table(void **state) {
+  (void)state;
+  Options o = parsed("lido bench a b --vary render.exposure=1,2 c --vary light.colour=[1,2,3],[4,5,6]");
+  assert_int_equal(o.source_count, 3);
+  assert_string_equal(o.source, "a");
+  assert_string_equal(o.sources[0], "a");
+  assert_string_equal(o.sources[2], "c");
+  assert_int_equal(o.vary_count, 2);
+  assert_int_equal(vary_combination_count(o.varies, o.vary_count), 4);
+  options_free(&o);
+  o = parsed("lido bench --vary render.exposure=1");
+  assert_int_equal(o.source_count, 1);
+  assert_string_equal(o.sources[0], SCENE_DEFAULT);
+  options_free(&o);
+  o = parsed("lido still_pool");
+  assert_int_equal(o.source_count, 1);
+  assert_string_equal(o.sources[0], "still_pool");
+  options_free(&o);
+}
+
+/// A comma in brackets or in a string ends no value, and the last key changes first.
+static void test_values_that_vary(void **state) {
+  (void)state;
+  const struct {
+    const char *vary;
+    int count;
+    const char *last;
+  } cases[] = {
+      {"render.a=1", 1, "render.a=1"},
+      {"render.a=1,2=3", 2, "render.a=2=3"},
+      {"render.a=[1,2],[3,[4,5]]", 2, "render.a=[3,[4,5]]"},
+      {"render.a={\"x\":1,\"y\":[2,3]},4", 2, "render.a=4"},
+      {"render.a=\"],\\\",[\",b", 2, "render.a=b"},
+      {"render.a=],b", 2, "render.a=b"},
+  };
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    char cause[300];
+    assert_true(vary_check(cases[i].vary, cause, sizeof cause));
+    assert_int_equal(vary_value_count(cases[i].vary), cases[i].count);
+    char *set = vary_set(cases[i].vary, cases[i].count - 1);
+    assert_string_equal(set, cases[i].last);
+    free(set);
+  }
+  const char *const varies[] = {"render.a=1,2", "render.b=1,2,3"};
+  const int places[6][2] = {{0, 0}, {0, 1}, {0, 2}, {1, 0}, {1, 1}, {1, 2}};
+  assert_int_equal(vary_combination_count(varies, 2), 6);
+  for (int c = 0; c < 6; c++)
+    for (int k = 0; k < 2; k++) assert_int_equal(vary_place(varies, 2, k, c), places[c][k]);
+}
+
 static void test_style_and_seed_win_over_set(void **state) {
   (void)state;
   Options o = parsed("lido --style points --seed 3 --set render.style=x --set simulation.seed=1");
@@ -179,6 +229,23 @@ static void test_refusals(void **state) {
       {"lido bench --sizes 4x4,", "--sizes: must be up to 8 of WIDTHxHEIGHT with commas between, each from 1 to 16384 pixels, got \"4x4,\""},
       {"lido bench --particles 1,0", "--particles: must be up to 8 whole numbers in [1, 100000000] with commas between, got \"1,0\""},
       {"lido bench --particles 1,2,3,4,5,6,7,8,9", "--particles: must be up to 8 whole numbers in [1, 100000000] with commas between, got \"1,2,3,4,5,6,7,8,9\""},
+      {"lido bench --vary render.exposure", "--vary: must have the form key.path=value,value,... and no value may be empty, got \"render.exposure\""},
+      {"lido bench --vary render.exposure=", "--vary: must have the form key.path=value,value,... and no value may be empty, got \"render.exposure=\""},
+      {"lido bench --vary render.exposure=1,,2", "--vary: must have the form key.path=value,value,... and no value may be empty, got \"render.exposure=1,,2\""},
+      {"lido bench --vary render.exposure=1,", "--vary: must have the form key.path=value,value,... and no value may be empty, got \"render.exposure=1,\""},
+      {"lido bench --vary =1", "--vary: must have the form key.path=value,value,... and no value may be empty, got \"=1\""},
+      {"lido bench --vary simulation.cfl=1", "--vary: only keys that change nothing but the picture can vary, those of render, light, environment and camera, got \"simulation.cfl=1\""},
+      {"lido bench --vary lights.sun=1", "--vary: only keys that change nothing but the picture can vary, those of render, light, environment and camera, got \"lights.sun=1\""},
+      {"lido bench --vary render=1", "--vary: only keys that change nothing but the picture can vary, those of render, light, environment and camera, got \"render=1\""},
+      {"lido bench --vary light.a=1 --vary light.a=2", "--vary: this key varies already, got \"light.a=2\""},
+      {"lido bench --vary light.a=1,2,3,4,5,6,7,8 --vary light.b=1,2,3,4,5,6,7,8,9", "--vary: these are more than 64 combinations, got \"light.b=1,2,3,4,5,6,7,8,9\""},
+      {"lido bench --vary light.a=1 --sizes 4x4", "--vary: not together with --sizes"},
+      {"lido bench --particles 9 --vary light.a=1", "--vary: not together with --particles"},
+      {"lido bench --vary render.style=points --style points", "--vary render.style: not together with --style"},
+      {"lido render a.json -o b_%d.png --vary light.a=1", "--vary: lido render has no use for it"},
+      {"lido bench a b", "b: one argument too many"},
+      {"lido check a b --vary light.a=1", "b: one argument too many"},
+      {"lido a bench b --vary light.a=1", "b: one argument too many"},
       {"lido render a.json -o b_%d.png --sizes 4x4", "--sizes: lido render has no use for it"},
       {"lido --set simulation", "--set: must have the form key.path=value, got \"simulation\""},
   };
@@ -263,9 +330,9 @@ static void test_control_characters_are_not_echoed(void **state) {
 
 static void test_help_names_every_command_and_option(void **state) {
   (void)state;
-  const char *const options[] = {"output",  "style",  "size",      "frames", "fps",   "context",
-                                 "threads", "seed",   "set",       "camera", "layer", "stats",
-                                 "json",    "schema", "reference", "quiet",  "help",  "version"};
+  const char *const options[] = {"output",    "style", "size",   "frames",  "fps",   "context",   "threads",
+                                 "seed",      "set",   "camera", "layer",   "stats", "json",      "schema",
+                                 "reference", "quiet", "help",   "version", "sizes", "particles", "vary"};
   char *text = NULL;
   size_t size;
   FILE *file = open_memstream(&text, &size);
@@ -291,6 +358,8 @@ int main(void) {
       cmocka_unit_test(test_commands_and_sources),
       cmocka_unit_test(test_defaults),
       cmocka_unit_test(test_values),
+      cmocka_unit_test(test_scenes_of_a_varied_table),
+      cmocka_unit_test(test_values_that_vary),
       cmocka_unit_test(test_style_and_seed_win_over_set),
       cmocka_unit_test(test_frames),
       cmocka_unit_test(test_help_and_version_need_nothing_else),
