@@ -43,7 +43,8 @@ static bool draw_tone(RenderPicture *picture, const char *defines, const GpuTarg
 // Input: `toned`. Output: `final`.
 static bool draw_smooth(RenderPicture *picture, RenderError *error) {
   RenderCompose *compose = &picture->compose;
-  const GpuProgramDesc desc = {.label = "antialias and dither", .file = "smooth.glsl"};
+  const GpuProgramDesc desc = {
+      .label = "antialias and dither", .file = "smooth.glsl", .defines = picture->drawn ? "#define FLAT 1\n" : NULL};
   if (!gpu_program_prepare(&compose->smooth_program, &desc, error)) return false;
   gpu_draw(picture->gpu, &(GpuDraw){
                              .program = &compose->smooth_program,
@@ -57,7 +58,8 @@ bool render_compose_draw(RenderPicture *picture, RenderError *error) {
   if (picture->settings->tone_map == RENDER_TONE_NONE) {
     return draw_tone(picture, "", &picture->compose.final_target, error);
   }
-  return draw_tone(picture, "#define FILMIC 1\n", &picture->compose.toned_target, error) && draw_smooth(picture, error);
+  const char *const curve = picture->drawn ? "#define FLAT 1\n" : "#define FILMIC 1\n";
+  return draw_tone(picture, curve, &picture->compose.toned_target, error) && draw_smooth(picture, error);
 }
 
 bool render_compose_layer(RenderPicture *picture, const RenderLayer *layer, const GpuTexture *texture,

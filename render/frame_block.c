@@ -127,6 +127,26 @@ static void write_environment(RenderFrameBlock *block, const RenderPicture *pict
   set4(block->container_max, container->max, across);
 }
 
+// Level water's light is moved to the middle of its level, so that small waves do not change it.
+static float level_shift(const RenderCartoon *cartoon, const RenderFrameBlock *block) {
+  const float level = (float)cartoon->levels * fmaxf(block->sun_direction[1], 0);
+  return cartoon->steady ? 0.5f - (level - floorf(level)) : 0;
+}
+
+static void write_drawing(RenderFrameBlock *block, const RenderCartoon *cartoon) {
+  const RenderPalette *palette = &cartoon->palette;
+  const float levels[4] = {(float)cartoon->levels, cartoon->bright_levels, level_shift(cartoon, block),
+                           cartoon->outline};
+  const float regions[4] = {cartoon->bright_threshold, cartoon->dark_threshold, cartoon->bright_factor,
+                            cartoon->dark_factor};
+  memcpy(block->drawn_levels, levels, sizeof levels);
+  memcpy(block->drawn_regions, regions, sizeof regions);
+  set4(block->drawn_ink, palette->ink, cosf(glm_rad(cartoon->crease_angle)));
+  set4(block->drawn_shade, palette->shade, 0);
+  for (int i = 0; i < 3; ++i) set4(block->drawn_sky[i], palette->sky[i], 0);
+  for (int i = 0; i < 2; ++i) set4(block->drawn_floor[i], palette->floor[i], 0);
+}
+
 static void write_defines(RenderPicture *picture) {
   const RenderSettings *s = picture->settings;
   static const char *const skies[] = {"SKY_CLEAR", "SKY_GRADIENT"};
@@ -134,9 +154,9 @@ static void write_defines(RenderPicture *picture) {
   const bool shadow = s->sun && s->shadow;
   const bool water = picture->particles.count > 0;
   const bool solids = picture->obstacles.count > 0;
-  snprintf(picture->defines, sizeof picture->defines, "#define %s 1\n#define %s 1\n%s%s", skies[s->sky],
-           floors[s->floor], shadow && water ? "#define WATER_SHADOW 1\n" : "",
-           shadow && solids ? "#define SOLID_SHADOW 1\n" : "");
+  snprintf(picture->defines, sizeof picture->defines, "#define %s 1\n#define %s 1\n%s%s%s", skies[s->sky],
+           floors[s->floor], picture->drawn ? "#define DRAWN 1\n" : "",
+           shadow && water ? "#define WATER_SHADOW 1\n" : "", shadow && solids ? "#define SOLID_SHADOW 1\n" : "");
 }
 
 bool render_frame_block_write(RenderPicture *picture, const RenderView *view, RenderError *error) {
@@ -146,6 +166,7 @@ bool render_frame_block_write(RenderPicture *picture, const RenderView *view, Re
   write_camera(block, picture, view);
   write_sun(block, picture->settings, &box);
   write_environment(block, picture, &box);
+  write_drawing(block, &picture->settings->cartoon);
   write_defines(picture);
   return gpu_buffer_write(&picture->uniforms, "frame block", block, sizeof *block, error);
 }

@@ -33,6 +33,13 @@ typedef struct RenderFrameBlock {
   float floor_plane[4];     // level (m), tile size (m), distance at which tiles fade out (m), –
   float container_min[4];   // m; water level of the container, 1 when it is drawn, else 0
   float container_max[4];   // m; size of the scene (m)
+  // of drawn pictures, see drawn.glsl
+  float drawn_levels[4];  // l of Eq. 6; 1: its ceiling, 0: its floor; shift of the levels; width of outlines (pixels)
+  float drawn_regions[4]; // T_bc, T_dc, F_bc, F_dc of Eq. 7
+  float drawn_ink[4];     // linear; cosine of the angle of creases
+  float drawn_shade[4];   // –
+  float drawn_sky[3][4];  // –
+  float drawn_floor[2][4]; // –
 } RenderFrameBlock;
 
 /// The particles on the GPU, in the frame's order; those without a sensible position or radius have a radius of 0.
@@ -143,6 +150,7 @@ struct RenderPicture {
   int32_t width, height;
   GpuBuffer uniforms;     // the Frame block
   RenderFrameBlock block; // what is in it
+  bool drawn;             // in flat colours, see drawn.glsl
   char defines[256];      // compile-time choices: sky, floor, sun, shadow …
   RenderParticles particles;
   RenderTiles tiles;

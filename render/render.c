@@ -186,6 +186,7 @@ bool render_draw(Render *render, const SimFrame *frame, const RenderView *view, 
   render->style = style;
   render->picture.frame = frame;
   render->picture.settings = settings;
+  render->picture.drawn = style->drawn;
   gpu_passes_restart(&render->gpu);
   const bool drawn = draw_passes(render, view, state, error);
   render->picture.frame = NULL;

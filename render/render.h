@@ -93,6 +93,68 @@ typedef struct RenderRaycast {
   float filter_angle;        ///< its standard deviation of normals, as the length of their difference, (0, 2], default 0.2
 } RenderRaycast;
 
+/// How the style "cartoon" makes a smooth surface of the particles' spheres.
+typedef enum RenderCartoonSmoothing {
+  RENDER_CARTOON_BILATERAL = 0,  ///< the bilateral filter of Rocha Neto et al. (Eqs. 1, 2): the default
+  RENDER_CARTOON_CURVATURE = 1,  ///< curvature flow (van der Laan, Green, Sainz 2009)
+  RENDER_CARTOON_NONE = 2        ///< the spheres as they are
+} RenderCartoonSmoothing;
+
+/// The colours of a drawing, linear light, [0, 1]. The water's are C_f of Eq. 8, what it would be in full light, for each of the
+/// three regions of Eq. 7: three times the same is the paper's shading, different ones turn the hue with the light.
+typedef struct RenderPalette {
+  float dark[3], medium[3], bright[3]; ///< C_f
+  float splash[2][3];                  ///< drops in the light, and away from it
+  float ink[3];                        ///< outlines
+  float shade[3];                      ///< what shadow leaves of a colour that is not water's
+  float sky[3][3];                     ///< overhead, half way, at the horizon
+  float floor[2][3];                   ///< tiles and the lines between them
+} RenderPalette;
+
+/// The style "cartoon" (Rocha Neto, Guimarães, Apolinário, Mello 2014); make it with render_default_settings.
+typedef struct RenderCartoon {
+  // the surface
+  float scale;               ///< radius of the spheres, particle radii, [0.5, 4], default 1.5
+  RenderCartoonSmoothing smoothing;
+  int32_t kernel;            ///< bilateral: size of the kernel in pixels of the depth map, [0, 63]; 0 (default): by `reach`, so
+                             ///< that it is the same in the world however far it is (section III-B)
+  float reach;               ///< adaptive kernel, curvature: half of its size, radii, [0, 50], default 12
+  bool separated;            ///< bilateral: along rows, then along columns; default false: the full kernel
+  bool fitted;               ///< bilateral: the plane that fits best by the filter's weights, so that slanted water keeps its
+                             ///< slope up to its borders: the default; false: the mean, as in Eqs. 1 and 2
+  float range;               ///< bilateral: standard deviation in depth of what is one surface, radii, (0, 100], default 4
+  bool half_resolution;      ///< depth, thickness and normals at half the picture's resolution, default true
+  bool splashes_apart;       ///< drops are drawn by themselves and smear no surface (default); false: as in the paper
+  // tones
+  int32_t levels;            ///< l of Eq. 6, [1, 32], default 3
+  bool bright_levels;        ///< the ceiling instead of the floor in Eq. 6: slightly brighter, default true
+  bool steady;               ///< levels are shifted so that still water lies in the middle of one and its tone cannot
+                             ///< flicker (default); false: as in the paper
+  float bright_threshold, dark_threshold; ///< T_bc and T_dc of Eq. 7, [0, 1], default 0.85 and 0.5
+  float bright_factor, dark_factor;       ///< F_bc and F_dc, [1, 10] and [0, 1], default 1.1 and 0.9
+  // light
+  bool reflection, refraction;                   ///< what the water shows beside its tones (Figure 6), default true
+  float most_reflection, least_reflection;       ///< K_Rmax and K_Rmin of Eq. 4, [0, 1], default the palette's and 0
+  float most_transparency, least_transparency;   ///< K_Tmax and K_Tmin of Eq. 5, [0, 1], default the palette's and 0
+  float critical_angle, angle_interval;          ///< θ_c and θ_s: reflection and transparency change over within θ_s on either
+                                                 ///< side of θ_c, degrees, [0, 90], default 60 and 20
+  float clearness;           ///< m of water through which a share of 1/e of the scene behind is seen (T of Eq. 8 in this unit),
+                             ///< [0, 1e6]; 0 (default): a twelfth of the scene's size
+  float bending;             ///< λ of Eq. 10: displacement of what is behind by a metre of water, m, [-10, 10], default 0.3
+  // lines
+  float outline;             ///< width of outlines, pixels, [0, 16], default 3; 0: none
+  float crease_angle;        ///< edges of solids and water sharper than this are outlined too, degrees, [0, 180], default 40
+  RenderPalette palette;
+} RenderCartoon;
+
+/// A palette with a name, and how much a liquid of these colours mirrors and lets through.
+typedef struct RenderNamedPalette {
+  const char *name;
+  float most_reflection, most_transparency;
+  RenderPalette palette;
+} RenderNamedPalette;
+const RenderNamedPalette *render_palette(int32_t index); ///< NULL when out of range; 0 is "lagoon", the default
+
 /// Everything about a picture that is not the water's shape or the eye. Colours are linear light.
 /// Make it with render_default_settings, change what you need.
 typedef struct RenderSettings {
@@ -127,6 +189,7 @@ typedef struct RenderSettings {
 
   RenderRefraction refraction;
   RenderRaycast raycast;
+  RenderCartoon cartoon;
 
   // style "points"
   struct { float scale; } points; ///< sphere radius in particle radii, default 1.25, range [0.1, 5]

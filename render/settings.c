@@ -45,6 +45,30 @@ RenderSettings render_default_settings(void) {
                   .blend_weight = -1,
                   .filter_reach = 3,
                   .filter_angle = 0.2f},
+      .cartoon = {.scale = 1.5f,
+                  .smoothing = RENDER_CARTOON_BILATERAL,
+                  .reach = 12,
+                  .fitted = true,
+                  .range = 4,
+                  .half_resolution = true,
+                  .splashes_apart = true,
+                  .levels = 3,
+                  .bright_levels = true,
+                  .steady = true,
+                  .bright_threshold = 0.85f,
+                  .dark_threshold = 0.5f,
+                  .bright_factor = 1.1f,
+                  .dark_factor = 0.9f,
+                  .reflection = true,
+                  .refraction = true,
+                  .most_reflection = render_palette(0)->most_reflection,
+                  .most_transparency = render_palette(0)->most_transparency,
+                  .critical_angle = 60,
+                  .angle_interval = 20,
+                  .bending = 0.3f,
+                  .outline = 3,
+                  .crease_angle = 40,
+                  .palette = render_palette(0)->palette},
       .points = {.scale = 1.25f},
   };
 }
@@ -96,6 +120,35 @@ static bool raycast_check(const RenderRaycast *r, RenderError *error) {
   return true;
 }
 
+static bool palette_check(const RenderPalette *p, RenderError *error) {
+  const float *colours = p->dark; // the palette is nothing but colours
+  return all_in_range(colours, sizeof *p / sizeof(float), 0, 1) ||
+         gpu_fail(error, "the colours of a palette must be in [0, 1]");
+}
+
+static bool cartoon_check(const RenderCartoon *c, RenderError *error) {
+  if (!in_range(c->scale, 0.5f, 4)) return gpu_fail(error, "the scale of spheres must be in [0.5, 4]");
+  if ((unsigned)c->smoothing > RENDER_CARTOON_NONE) return gpu_fail(error, "unknown smoothing %d", (int)c->smoothing);
+  if (c->kernel < 0 || c->kernel > 63) return gpu_fail(error, "the kernel of the smoothing must be in [0, 63] pixels");
+  if (!in_range(c->reach, 0, 50)) return gpu_fail(error, "the reach of the smoothing must be in [0, 50] radii");
+  if (!in_range(c->range, 1e-3f, 100))
+    return gpu_fail(error, "the range of the smoothing must be in [0.001, 100] radii");
+  if (c->levels < 1 || c->levels > 32) return gpu_fail(error, "the levels of the shading must be in [1, 32]");
+  const float shares[] = {c->bright_threshold, c->dark_threshold,    c->dark_factor,       c->most_reflection,
+                          c->least_reflection, c->most_transparency, c->least_transparency};
+  if (!all_in_range(shares, sizeof shares / sizeof *shares, 0, 1)) {
+    return gpu_fail(error, "thresholds, the dark factor, reflection and transparency must be in [0, 1]");
+  }
+  if (!in_range(c->bright_factor, 1, 10)) return gpu_fail(error, "the bright factor must be in [1, 10]");
+  const float angles[] = {c->critical_angle, c->angle_interval};
+  if (!all_in_range(angles, 2, 0, 90)) return gpu_fail(error, "the critical angle and its interval must be in [0, 90]");
+  if (!in_range(c->clearness, 0, 1e6f)) return gpu_fail(error, "the clearness must be in [0, 1000000] m");
+  if (!in_range(c->bending, -10, 10)) return gpu_fail(error, "the bending must be in [-10, 10]");
+  if (!in_range(c->outline, 0, 16)) return gpu_fail(error, "outlines must be in [0, 16] pixels");
+  if (!in_range(c->crease_angle, 0, 180)) return gpu_fail(error, "the angle of creases must be in [0, 180]");
+  return palette_check(&c->palette, error);
+}
+
 bool render_settings_check(const RenderSettings *s, RenderError *error) {
   if (s->cookie != SETTINGS_COOKIE) return gpu_fail(error, "settings were not made by render_default_settings");
   if (!all_finite(s->sun_direction, 3) || is_zero(s->sun_direction)) {
@@ -119,7 +172,8 @@ bool render_settings_check(const RenderSettings *s, RenderError *error) {
   if (!in_range(s->refractive_index, 1, 3)) return gpu_fail(error, "the refractive index must be in [1, 3]");
   if (!in_range(s->exposure, 1e-6f, 1e6f)) return gpu_fail(error, "the exposure must be in [0.000001, 1000000]");
   if (!in_range(s->points.scale, 0.1f, 5)) return gpu_fail(error, "the scale of points must be in [0.1, 5]");
-  return refraction_check(&s->refraction, error) && raycast_check(&s->raycast, error);
+  return refraction_check(&s->refraction, error) && raycast_check(&s->raycast, error) &&
+         cartoon_check(&s->cartoon, error);
 }
 
 bool render_view_check(const RenderView *view, RenderError *error) {

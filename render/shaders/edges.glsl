@@ -2,7 +2,11 @@
 // the eye is in front of the water, the rest is behind it; FRONT chooses. The open top has no wall.
 // A tank has twelve straight edges. A GLASS has a rim, which shows how thick the wall is, and a foot, each cut at the two
 // places where the line of sight grazes the wall, and there two upright outlines.
+// DRAWN: lines of ink, of the same width however far they are.
 #include "frame.glsl"
+#ifdef DRAWN
+#include "drawn.glsl"
+#endif
 
 #ifdef VERTEX_STAGE
 noperspective out vec2 across; // distance from the line's middle, half its width; pixels
@@ -104,7 +108,11 @@ void main() {
   float side = v == 0 || v == 1 || v == 3 ? -1.0 : 1.0;
   vec3 p = at_b ? line.b : line.a;
   vec2 along = way_on_screen(p, at_b ? line.way_b : line.way_a, straight);
+#ifdef DRAWN
+  float half_width = DRAWN_EDGE * drawn_levels.w;
+#else
   float half_width = clamp(line.width * container_max.w / -p.z / lens.y * 0.5 * lens.w, 0.7, 8.0);
+#endif
   across = vec2(side * (half_width + 1.0), half_width);
   tone = line.tone;
   vec2 past_end = (at_b ? along : -along) * line.overlap * half_width;
@@ -121,6 +129,10 @@ noperspective in float tone;
 layout(location = 0) out vec4 result; // premultiplied
 
 void main() {
+#ifdef DRAWN
+  float coverage = line_coverage(abs(across.x), across.y);
+  result = vec4(drawn_ink.rgb * coverage, coverage);
+#else
   float coverage = clamp(across.y + 0.5 - abs(across.x), 0.0, 1.0);
   // Glass gathers light along its middle and is sea green at its rims.
   float rim = min(abs(across.x) / across.y, 1.0);
@@ -128,5 +140,6 @@ void main() {
   vec3 light = mix(bright, vec3(0.10, 0.24, 0.24), rim * rim);
   float alpha = coverage * 0.85 * tone;
   result = vec4(light * alpha, alpha);
+#endif
 }
 #endif

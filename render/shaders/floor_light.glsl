@@ -7,7 +7,9 @@ vec3 floor_light(vec3 p, vec3 way, float across) {
 }
 #endif
 
-#ifdef FLOOR_TILES
+#if defined(FLOOR_TILES) && defined(DRAWN)
+#include "drawn_floor.glsl"
+#elif defined(FLOOR_TILES)
 // The part of [a, b] that lies in grout, where each tile begins with `width` of it (all in tiles).
 vec2 grout_between(vec2 a, vec2 b, float width) {
   vec2 up_to_a = floor(a) * width + min(fract(a), width);

@@ -15,6 +15,13 @@ layout(std140, binding = 0) uniform Frame {
   vec4 floor_plane;     // level, tile size, distance at which tiles fade out
   vec4 container_min;   // m; 1 when it is drawn
   vec4 container_max;   // m; size of the scene
+  // of drawn pictures (DRAWN)
+  vec4 drawn_levels;    // l of Eq. 6; 1: its ceiling; shift of the levels; width of outlines, pixels
+  vec4 drawn_regions;   // T_bc, T_dc, F_bc, F_dc of Eq. 7
+  vec4 drawn_ink;       // linear; cosine of the angle between normals beyond which an edge is a crease
+  vec4 drawn_shade;     // what shadow leaves of a colour
+  vec4 drawn_sky[3];    // overhead, half way, at the horizon
+  vec4 drawn_floor[2];  // tiles, the lines between them
 };
 
 const float PI = 3.14159265359;

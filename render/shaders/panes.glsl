@@ -42,6 +42,28 @@ in vec3 at;
 in vec3 normal;
 layout(location = 0) out vec4 result; // premultiplied
 
+#ifdef DRAWN
+// Glass as it is drawn: two flat slanted gleams across an upper corner, or upright ones on a round wall.
+const float GLEAM = 0.12;
+
+float band(float x, float from, float to) {
+  float soft = fwidth(x);
+  return clamp((x - from) / soft + 0.5, 0.0, 1.0) * clamp((to - x) / soft + 0.5, 0.0, 1.0);
+}
+
+void main() {
+#ifdef GLASS
+  vec3 v = normalize(eye.xyz - at);
+  float aside = normal.x * v.z - normal.z * v.x, height = (at.y - container_min.y) / (container_max.y - container_min.y);
+  float gleam = (band(aside, 0.52, 0.66) + band(aside, 0.72, 0.76)) * band(height, 0.12, 0.86);
+#else
+  vec3 from_corner = at - vec3(container_min.x, container_max.y, container_min.z);
+  float x = (from_corner.x + from_corner.z - from_corner.y) / (container_max.y - container_min.y);
+  float gleam = band(x, 0.42, 0.62) + band(x, 0.70, 0.76);
+#endif
+  result = vec4(mix(drawn_sky[2].rgb, vec3(1.0), 0.5), 1.0) * (GLEAM * gleam);
+}
+#else
 void main() {
   vec3 v = normalize(eye.xyz - at), n = normalize(normal);
   // Two surfaces of glass, n = 1.5.
@@ -63,4 +85,5 @@ void main() {
 #endif
   result = vec4(light, mirror);
 }
+#endif
 #endif

@@ -1,6 +1,9 @@
 // What a ray in the air sees of the scene around the water: bodies, floor and sky where they are, met by geometry. Include
 // it after frame.glsl, with BODIES defined where there are any, the ends of each shape in `body_end`, and the picture of the
 // background with its depth in `background`.
+#ifdef DRAWN
+#include "drawn.glsl"
+#endif
 #include "sky.glsl"
 #include "sun.glsl"
 #include "floor_light.glsl"
@@ -115,13 +118,18 @@ vec3 past_edges(vec3 origin, vec3 way, float end, float path, vec3 light) {
   bool inside = all(greaterThan(origin, container_min.xyz - 1e-3)) && all(lessThan(origin, container_max.xyz + 1e-3));
   vec3 from = abs(min(origin + way * t - container_min.xyz, container_max.xyz - origin - way * t));
   float nearest = min(max(from.x, from.y), min(max(from.y, from.z), max(from.x, from.z)));
-  float pixel = pixel_at(path + t), half_width = max(0.0016 * container_max.w * 0.5, 0.7 * pixel);
+#ifdef DRAWN
+  float pixel = pixel_at(path + t), half_width = DRAWN_EDGE * drawn_levels.w * pixel, opacity = 1.0;
+  vec3 edge = drawn_ink.rgb;
+#else
+  float pixel = pixel_at(path + t), half_width = max(0.0016 * container_max.w * 0.5, 0.7 * pixel), opacity = 0.55;
+  vec3 edge = sky_average(vec3(0.0, 1.0, 0.0)) + sun_colour.rgb * 0.3;
+#endif
   // A curved or grazed surface shows more of the wall in a pixel: there the line is wider and fainter.
   float footprint = clamp(fwidth(nearest), pixel, 16.0 * pixel), half_shown = max(half_width, 0.7 * footprint);
   float coverage = inside && t <= end + 1e-3 ? clamp((half_shown - nearest) / footprint + 0.5, 0.0, 1.0) : 0.0;
   coverage *= half_width / half_shown;
-  vec3 edge = sky_average(vec3(0.0, 1.0, 0.0)) + sun_colour.rgb * 0.3;
-  return mix(light, edge, coverage * 0.55);
+  return mix(light, edge, coverage * opacity);
 #else
   return light;
 #endif

@@ -11,6 +11,8 @@ vec3 sky_at_horizon(vec3 d) {
 vec3 sky_average(vec3 normal) {
   return mix(sky_horizon.rgb, sky_zenith.rgb, 0.25 + 0.25 * normal.y);
 }
+#elif defined(DRAWN)
+#include "drawn_sky.glsl"
 #else
 const vec3 SKY_HORIZON = vec3(0.70, 0.82, 0.92);
 const vec3 SKY_MIDDLE = vec3(0.17, 0.42, 0.84);

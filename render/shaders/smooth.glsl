@@ -1,4 +1,4 @@
-// Antialiased edges and dither: the last pass. Where brightness changes sharply, the picture is blended along the edge
+// Antialiased edges and dither, which FLAT colours do without: the last pass. Where brightness changes sharply, the picture is blended along the edge
 // (after Lottes, "FXAA", 2009: direction from the four diagonal neighbours, two and four taps along it).
 #include "frame.glsl"
 #include "screen.glsl"
@@ -23,6 +23,13 @@ vec3 antialiased(ivec2 pixel) {
   float low = min(m, min(min(nw, ne), min(sw, se))), high = max(m, max(max(nw, ne), max(sw, se)));
   if (high - low < max(0.03, 0.1 * high)) return middle; // no edge here
 
+#ifdef FLAT
+  // A tone between two others is an edge that is smooth already, as lines are, which this would fray.
+  vec4 corners = vec4(nw, ne, sw, se);
+  vec4 off = min(corners - low, high - corners);
+  float most_off = max(max(max(off.x, off.y), max(off.z, off.w)), min(m - low, high - m));
+  if (most_off > 0.2 * (high - low)) return middle;
+#endif
   vec2 direction = vec2((nw + ne) - (sw + se), (nw + sw) - (ne + se)); // across the gradient
   float shorten = 1.0 / (min(abs(direction.x), abs(direction.y)) + max(0.03125 * (nw + ne + sw + se), 0.0078));
   vec2 step_along = clamp(direction * shorten, vec2(-8.0), vec2(8.0)) / lens.zw;
@@ -35,6 +42,10 @@ vec3 antialiased(ivec2 pixel) {
 }
 
 void main() {
+#ifdef FLAT
+  result = vec4(antialiased(ivec2(gl_FragCoord.xy)), 1.0);
+#else
   result = vec4(antialiased(ivec2(gl_FragCoord.xy)) + dither(uvec2(gl_FragCoord.xy)), 1.0);
+#endif
 }
 #endif
