@@ -151,6 +151,53 @@ static RenderRaycast raycast_settings(const SceneRaycast *scene) {
                          .filter_angle = scene->filter_angle};
 }
 
+static RenderPalette palette_settings(const SceneCartoon *scene) {
+  RenderPalette palette;
+  const struct {
+    float *to;
+    const float *from;
+  } colours[] = {
+      {palette.dark, scene->dark},        {palette.medium, scene->medium},         {palette.bright, scene->bright},
+      {palette.splash[0], scene->splash}, {palette.splash[1], scene->splash_dark}, {palette.ink, scene->ink},
+      {palette.shade, scene->shade},      {palette.sky[0], scene->sky_top},        {palette.sky[1], scene->sky_middle},
+      {palette.sky[2], scene->sky_low},   {palette.floor[0], scene->floor},        {palette.floor[1], scene->grout}};
+  for (size_t i = 0; i < sizeof colours / sizeof *colours; i++)
+    memcpy(colours[i].to, colours[i].from, 3 * sizeof(float));
+  return palette;
+}
+
+static RenderCartoon cartoon_settings(const SceneCartoon *scene) {
+  return (RenderCartoon){.scale = scene->scale,
+                         .smoothing = (RenderCartoonSmoothing)scene->smoothing,
+                         .kernel = scene->kernel,
+                         .reach = scene->reach,
+                         .separated = scene->separated,
+                         .fitted = scene->fitted,
+                         .range = scene->range,
+                         .half_resolution = scene->half_resolution,
+                         .splashes_apart = scene->splashes_apart,
+                         .levels = scene->levels,
+                         .bright_levels = scene->bright_levels,
+                         .steady = scene->steady,
+                         .bright_threshold = scene->bright_threshold,
+                         .dark_threshold = scene->dark_threshold,
+                         .bright_factor = scene->bright_factor,
+                         .dark_factor = scene->dark_factor,
+                         .reflection = scene->reflection,
+                         .refraction = scene->refraction,
+                         .most_reflection = scene->most_reflection,
+                         .least_reflection = scene->least_reflection,
+                         .most_transparency = scene->most_transparency,
+                         .least_transparency = scene->least_transparency,
+                         .critical_angle = scene->critical_angle,
+                         .angle_interval = scene->angle_interval,
+                         .clearness = scene->clearness,
+                         .bending = scene->bending,
+                         .outline = scene->outline,
+                         .crease_angle = scene->crease_angle,
+                         .palette = palette_settings(scene)};
+}
+
 RenderSettings scene_render_settings(const Scene *scene) {
   const SceneEnvironment *environment = &scene->environment;
   RenderSettings settings = render_default_settings();
@@ -176,6 +223,7 @@ RenderSettings scene_render_settings(const Scene *scene) {
   settings.exposure = scene->render.exposure;
   settings.points.scale = scene->render.points.scale;
   settings.raycast = raycast_settings(&scene->render.raycast);
+  settings.cartoon = cartoon_settings(&scene->render.cartoon);
   settings.refraction = refraction_settings(&scene->render.refraction);
   return settings;
 }

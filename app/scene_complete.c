@@ -355,6 +355,36 @@ static void take_material(const Check *check) {
     if (!cJSON_HasObjectItem(given, keys[k].key)) memcpy(keys[k].value, keys[k].of_material, keys[k].size);
 }
 
+// ---- Palette --------------------------------------------------------------------------------------------------------
+
+/// What the scene does not say of its colours is its palette's; the key's choices are the renderer's, in their order.
+static void take_palette(Scene *scene) {
+  SceneCartoon *cartoon = &scene->render.cartoon;
+  const RenderNamedPalette *named = render_palette(cartoon->palette);
+  const RenderPalette *p = &named->palette;
+  const struct {
+    float *value;
+    const float *of_palette;
+    int count;
+  } keys[] = {{&cartoon->most_reflection, &named->most_reflection, 1},
+              {&cartoon->most_transparency, &named->most_transparency, 1},
+              {cartoon->dark, p->dark, 3},
+              {cartoon->medium, p->medium, 3},
+              {cartoon->bright, p->bright, 3},
+              {cartoon->splash, p->splash[0], 3},
+              {cartoon->splash_dark, p->splash[1], 3},
+              {cartoon->ink, p->ink, 3},
+              {cartoon->shade, p->shade, 3},
+              {cartoon->sky_top, p->sky[0], 3},
+              {cartoon->sky_middle, p->sky[1], 3},
+              {cartoon->sky_low, p->sky[2], 3},
+              {cartoon->floor, p->floor[0], 3},
+              {cartoon->grout, p->floor[1], 3}};
+  for (size_t k = 0; k < sizeof keys / sizeof *keys; k++)
+    for (int i = 0; i < keys[k].count; i++)
+      if (isnan(keys[k].value[i])) keys[k].value[i] = keys[k].of_palette[i];
+}
+
 bool scene_complete(const SceneSource *source, const cJSON *root, Scene *scene) {
   Check check = {source, root, scene};
   if (!check_container(&check) || !check_fluid(&check) || !check_sinks(&check) || !check_obstacles(&check))
@@ -362,6 +392,7 @@ bool scene_complete(const SceneSource *source, const cJSON *root, Scene *scene) 
   if (!scene_resolve_names(source, root, scene)) return false;
   place_camera(scene);
   take_material(&check);
+  take_palette(scene);
   if (distance(scene->camera.eye, scene->camera.target) <= 0)
     return fail_at(&check, "camera", "eye and target must not be the same point");
   for (int i = 0; i < scene->events_count; i++)

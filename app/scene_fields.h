@@ -293,6 +293,7 @@
     "Of the water.") \
   O(S, SceneRefraction, refraction, "The style refraction (Imai, Kanamori, Mitani 2016).") \
   O(S, SceneRaycast, raycast,      "The style raycast (Xiao, Zhang, Yang 2017).") \
+  O(S, SceneCartoon, cartoon,      "The style cartoon (Rocha Neto, Guimarães, Apolinário, Mello 2014).") \
   O(S, ScenePoints, points,        "The style points.")
 
 #define SCENE_REFRACTION(F, O, L, V, S) \
@@ -338,6 +339,90 @@
     "Half of the window of the bilateral filter of normals; 0: no filter.") \
   F(S, NUMBER,    filter_angle,    "",         "[0.001, 2]",       "0.2", \
     "Standard deviation of the normals in it, as the length of their difference.")
+
+#define SCENE_CARTOON(F, O, L, V, S) \
+  F(S, CHOICE,    palette,         "",         "lagoon | ink | lava | storm", "\"lagoon\"", \
+    "The colours of the drawing, and most_reflection and most_transparency: what is null here is the palette's.") \
+  F(S, NUMBER,    scale,           "radii",    "[0.5, 4]",         "1.5", \
+    "Radius of the spheres drawn, in particle radii.") \
+  F(S, CHOICE,    smoothing,       "", "bilateral | curvature_flow | none", "\"bilateral\"", \
+    "Filter of the depth map: bilateral (Eqs. 1, 2), or curvature flow (van der Laan, Green, Sainz 2009).") \
+  F(S, INTEGER,   kernel,          "pixels",   "[0, 63]",          "0", \
+    "bilateral: size of the kernel in pixels of the depth map; 0: by reach, so that it grows as the water comes closer.") \
+  F(S, NUMBER,    reach,           "radii",    "[0, 50]",          "12", \
+    "Half of the size of the adaptive kernel, and of what curvature flow smooths.") \
+  F(S, SWITCH,    separated,       "",         "",                 "false", \
+    "bilateral: along rows, then along columns; off: the full kernel.") \
+  F(S, SWITCH,    fitted,          "",         "",                 "true", \
+    "bilateral: planes fitted by its weights, so that slanted water keeps its slope up to its borders; off: means, as in the paper.") \
+  F(S, NUMBER,    range,           "radii",    "[0.001, 100]",     "4", \
+    "bilateral: differences in depth that still count as one surface.") \
+  F(S, SWITCH,    half_resolution, "",         "",                 "true", \
+    "Depth, thickness and normals at half the picture's resolution.") \
+  F(S, SWITCH,    splashes_apart,  "",         "",                 "true", \
+    "Drops are drawn by themselves and smear no surface; off: as in the paper.") \
+  F(S, INTEGER,   levels,          "",         "[1, 32]",          "3", \
+    "l of Eq. 6: levels of light.") \
+  F(S, SWITCH,    bright_levels,   "",         "",                 "true", \
+    "Eq. 6 with the ceiling, slightly brighter; off: with the floor.") \
+  F(S, SWITCH,    steady,          "",         "",                 "true", \
+    "Levels are shifted so that still water lies in the middle of one and does not flicker; off: as in the paper.") \
+  F(S, NUMBER,    bright_threshold, "",        "[0, 1]",           "0.85", \
+    "T_bc of Eq. 7: brighter levels are made brighter still.") \
+  F(S, NUMBER,    dark_threshold,  "",         "[0, 1]",           "0.5", \
+    "T_dc of Eq. 7: darker levels are made darker still.") \
+  F(S, NUMBER,    bright_factor,   "",         "[1, 10]",          "1.1", \
+    "F_bc of Eq. 7.") \
+  F(S, NUMBER,    dark_factor,     "",         "[0, 1]",           "0.9", \
+    "F_dc of Eq. 7.") \
+  F(S, SWITCH,    reflection,      "",         "",                 "true", \
+    "Whether the water mirrors its surroundings.") \
+  F(S, SWITCH,    refraction,      "",         "",                 "true", \
+    "Whether the scene behind is seen through the water.") \
+  F(S, OPTIONAL,  most_reflection, "",         "[0, 1]",           "null", \
+    "K_Rmax of Eq. 4: of water that is grazed.") \
+  F(S, NUMBER,    least_reflection, "",        "[0, 1]",           "0", \
+    "K_Rmin: of water that faces the eye.") \
+  F(S, OPTIONAL,  most_transparency, "",       "[0, 1]",           "null", \
+    "K_Tmax of Eq. 5: of water that faces the eye.") \
+  F(S, NUMBER,    least_transparency, "",      "[0, 1]",           "0", \
+    "K_Tmin: of water that is grazed.") \
+  F(S, NUMBER,    critical_angle,  "degrees",  "[0, 90]",          "60", \
+    "θ_c: the angle between normal and view at which transparency gives way to reflection.") \
+  F(S, NUMBER,    angle_interval,  "degrees",  "[0, 90]",          "20", \
+    "θ_s: how far on either side of it they change over.") \
+  F(S, NUMBER,    clearness,       "m",        "[0, 1000000]",     "0", \
+    "Water through which a share of 1/e of what is behind is seen (Eq. 8); 0: a twelfth of the scene's size.") \
+  F(S, NUMBER,    bending,         "",         "[-10, 10]",        "0.3", \
+    "λ of Eq. 10: how far what is behind is displaced for each metre of water.") \
+  F(S, NUMBER,    outline,         "pixels",   "[0, 16]",          "3", \
+    "Width of outlines; 0: none.") \
+  F(S, NUMBER,    crease_angle,    "degrees",  "[0, 180]",         "40", \
+    "Edges sharper than this are outlined.") \
+  F(S, OPTIONAL_VECTOR, dark,      "linear",   "[0, 1]",           "null", \
+    "Colour of the water in full light (C_f of Eq. 8) where Eq. 7 makes it darker.") \
+  F(S, OPTIONAL_VECTOR, medium,    "linear",   "[0, 1]",           "null", \
+    "The same where Eq. 7 leaves it.") \
+  F(S, OPTIONAL_VECTOR, bright,    "linear",   "[0, 1]",           "null", \
+    "The same where Eq. 7 makes it brighter.") \
+  F(S, OPTIONAL_VECTOR, splash,    "linear",   "[0, 1]",           "null", \
+    "Colour of drops in the light.") \
+  F(S, OPTIONAL_VECTOR, splash_dark, "linear", "[0, 1]",           "null", \
+    "Colour of drops away from it.") \
+  F(S, OPTIONAL_VECTOR, ink,       "linear",   "[0, 1]",           "null", \
+    "Colour of outlines.") \
+  F(S, OPTIONAL_VECTOR, shade,     "linear",   "[0, 1]",           "null", \
+    "What shadow leaves of the colours of floor and obstacles.") \
+  F(S, OPTIONAL_VECTOR, sky_top,   "linear",   "[0, 1]",           "null", \
+    "Colour of the sky overhead.") \
+  F(S, OPTIONAL_VECTOR, sky_middle, "linear",  "[0, 1]",           "null", \
+    "Half way.") \
+  F(S, OPTIONAL_VECTOR, sky_low,   "linear",   "[0, 1]",           "null", \
+    "At the horizon.") \
+  F(S, OPTIONAL_VECTOR, floor,     "linear",   "[0, 1]",           "null", \
+    "Colour of the floor's tiles.") \
+  F(S, OPTIONAL_VECTOR, grout,     "linear",   "[0, 1]",           "null", \
+    "Colour of the lines between them.")
 
 #define SCENE_POINTS(F, O, L, V, S) \
   F(S, NUMBER,    scale,           "radii",    "[0.1, 5]",         "1.25", \
@@ -431,6 +516,7 @@
   T(SceneRefraction, SCENE_REFRACTION) \
   T(ScenePoints, SCENE_POINTS) \
   T(SceneRaycast, SCENE_RAYCAST) \
+  T(SceneCartoon, SCENE_CARTOON) \
   T(SceneRender, SCENE_RENDER) \
   T(ScenePush, SCENE_PUSH) \
   T(ScenePour, SCENE_POUR) \

@@ -5,7 +5,7 @@
 #include <string.h>
 
 // Styles that the design names; they are refused with a clear message as long as the renderer does not have them.
-static const char *const later_styles[] = {"cartoon", "heightfield"};
+static const char *const later_styles[] = {"heightfield"};
 
 // ---- The table as data ----------------------------------------------------------------------------------------------
 

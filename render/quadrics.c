@@ -85,9 +85,9 @@ static void take_colour(float colour[4], const SimFrame *frame, int32_t i) {
   colour[3] = 0;
 }
 
-static bool take_ball(Ball *ball, const SimFrame *frame, int32_t i) {
+static bool take_ball(Ball *ball, const SimFrame *frame, int32_t i, float scale) {
   const float *centre = frame->position + 3 * (size_t)i;
-  const float radius = frame->radius != NULL ? frame->radius[i] : frame->particle_radius;
+  const float radius = scale * (frame->radius != NULL ? frame->radius[i] : frame->particle_radius);
   if (!valid_centre(centre) || !(radius > 0 && radius < RENDER_FARTHEST)) return false;
   for (int k = 0; k < 3; ++k) ball->centre[k] = centre[k];
   ball->radius = radius;
@@ -154,14 +154,24 @@ static int add_wall_images(Ellipsoid out[MOST_IMAGES], const SimContainer *conta
   return count;
 }
 
-// The ellipsoid and its images behind walls; their number, 0 when it cannot be drawn.
-static int32_t take_with_images(Ellipsoid out[MOST_IMAGES], const SimFrame *frame, const RenderRefraction *settings,
-                                int32_t i) {
-  const float *shape = frame->ellipsoid + 6 * (size_t)i;
+// A ball as an ellipsoid, which can be mirrored.
+static bool take_sphere(Ellipsoid *e, const SimFrame *frame, int32_t i, float scale) {
+  const float r = frame->radius != NULL ? frame->radius[i] : frame->particle_radius;
+  return take_ellipsoid(e, frame->position + 3 * (size_t)i, (const float[6]){r, r, r}, scale);
+}
+
+static bool take_aggregated(Ellipsoid *e, const SimFrame *frame, int32_t i, const RenderQuadricSettings *settings) {
+  if (settings->spheres) return take_sphere(e, frame, i, settings->scale);
   const float own = frame->radius != NULL ? frame->radius[i] / frame->particle_radius : 1;
   float centre[3];
   lifted_centre(frame, i, settings->lift, centre);
-  if (!take_ellipsoid(&out[0], centre, shape, settings->scale * own)) return 0;
+  return take_ellipsoid(e, centre, frame->ellipsoid + 6 * (size_t)i, settings->scale * own);
+}
+
+// The ellipsoid and its images behind walls; their number, 0 when it cannot be drawn.
+static int32_t take_with_images(Ellipsoid out[MOST_IMAGES], const SimFrame *frame,
+                                const RenderQuadricSettings *settings, int32_t i) {
+  if (!take_aggregated(&out[0], frame, i, settings)) return 0;
   take_colour(out[0].colour, frame, i);
   return frame->has_container ? add_wall_images(out, &frame->container, AT_WALL * frame->particle_radius) : 1;
 }
@@ -177,13 +187,14 @@ static bool reserve(void **memory, int32_t *capacity, int32_t count, size_t size
   return true;
 }
 
-static bool add_particle(RenderQuadrics *quadrics, const SimFrame *frame, int32_t i, const RenderRefraction *settings,
-                         RenderError *error) {
+static bool add_particle(RenderQuadrics *quadrics, const SimFrame *frame, int32_t i,
+                         const RenderQuadricSettings *settings, RenderError *error) {
   const bool as_ball = settings->splashes_apart && frame->particle_class[i] == SIM_SPLASH;
   if (as_ball) {
     if (!reserve(&quadrics->ball_staging, &quadrics->ball_capacity, quadrics->ball_count + 1, sizeof(Ball), error))
       return false;
-    quadrics->ball_count += take_ball((Ball *)quadrics->ball_staging + quadrics->ball_count, frame, i);
+    quadrics->ball_count +=
+        take_ball((Ball *)quadrics->ball_staging + quadrics->ball_count, frame, i, settings->ball_scale);
     return true;
   }
   if (!reserve(&quadrics->ellipsoid_staging, &quadrics->ellipsoid_capacity, quadrics->ellipsoid_count + MOST_IMAGES,
@@ -194,7 +205,7 @@ static bool add_particle(RenderQuadrics *quadrics, const SimFrame *frame, int32_
   return true;
 }
 
-bool render_quadrics_upload(RenderQuadrics *quadrics, const SimFrame *frame, const RenderRefraction *settings,
+bool render_quadrics_upload(RenderQuadrics *quadrics, const SimFrame *frame, const RenderQuadricSettings *settings,
                             RenderError *error) {
   quadrics->ellipsoid_count = quadrics->ball_count = 0;
   for (int32_t i = 0; i < frame->count; ++i) {

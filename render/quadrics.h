@@ -14,8 +14,18 @@ typedef struct RenderQuadrics {
   int32_t ellipsoid_capacity, ball_capacity;
 } RenderQuadrics;
 
-/// Needs: class, ellipsoids, near-surface flags.
-bool render_quadrics_upload(RenderQuadrics *quadrics, const SimFrame *frame, const RenderRefraction *settings,
+/// What is made of the particles.
+typedef struct RenderQuadricSettings {
+  float scale;         ///< of the ellipsoids
+  float lift;          ///< how far those at the surface are moved outwards, radii
+  bool spheres;        ///< instead of ellipsoids balls of `scale` radii where the particles are
+  bool splashes_apart; ///< splashes are balls; off: all are aggregated
+  float ball_scale;    ///< radius of balls, particle radii
+  bool surface_only;   ///< only what can be seen from outside the water
+} RenderQuadricSettings;
+
+/// Needs: class, near-surface flags and, but for spheres, ellipsoids.
+bool render_quadrics_upload(RenderQuadrics *quadrics, const SimFrame *frame, const RenderQuadricSettings *settings,
                             RenderError *error);
 /// Depth of the ellipsoid nearest to the eye among those that may be in the picture, m; RENDER_FARTHEST: there is none.
 float render_quadrics_nearest(const RenderQuadrics *quadrics, const RenderPicture *picture);

@@ -2,6 +2,8 @@
 // Perspective-Projected 3D Sphere", JCGT 2(2), 2013 (the tangents of its section 2).
 #include "render/splat.h"
 
+#include <math.h>
+
 // std140 block of splat.glsl
 typedef struct SplatParams {
   float scale;   // radius drawn, in particle radii
@@ -16,31 +18,40 @@ static float water_per_chord(float scale) {
   return 6 / (3.14159265f * scale * scale * scale);
 }
 
-// All particles, in as many draws as the driver's storage blocks need.
-static bool splat(RenderPicture *picture, const GpuProgram *program, float scale, const GpuTarget *out, GpuDraw draw,
-                  RenderError *error) {
-  const RenderParticles *particles = &picture->particles;
-  const SplatParams params = {
-      scale, water_per_chord(scale), {(float)out->width, (float)out->height}, particles->tinted, {0}};
+// Spheres, in as many draws as the driver's storage blocks need. `draw` brings the second buffer, of their colours, if any.
+static bool splat_spheres(RenderPicture *picture, const GpuBuffer *spheres, int32_t sphere_count,
+                          const SplatParams *params, GpuDraw draw, RenderError *error) {
   const size_t each = 4 * sizeof(float);
   const int32_t most = gpu_block_elements(picture->gpu, each, error);
   if (most == 0) return false;
-  draw.program = program;
-  draw.target = out;
-  draw.in.storage[0] = &particles->spheres;
-  draw.in.storage[1] = &particles->colours;
+  draw.in.storage[0] = spheres;
   draw.in.frame = &picture->uniforms;
-  draw.in.params = &params;
-  draw.in.params_size = sizeof params;
-  for (int64_t first = 0; first < particles->count; first += most) {
-    const int64_t left = particles->count - first;
+  draw.in.params = params;
+  draw.in.params_size = sizeof *params;
+  for (int64_t first = 0; first < sphere_count; first += most) {
+    const int64_t left = sphere_count - first;
     const int32_t count = left < most ? (int32_t)left : most;
     draw.vertices = 6 * count;
     draw.in.parts[0] = (GpuPart){each * (size_t)first, each * (size_t)count};
-    if (particles->tinted) draw.in.parts[1] = draw.in.parts[0];
+    if (params->tinted > 0) draw.in.parts[1] = draw.in.parts[0];
     gpu_draw(picture->gpu, &draw);
   }
   return true;
+}
+
+static SplatParams params_of(float scale, float volume, const GpuTarget *out, bool tinted) {
+  return (SplatParams){scale, volume, {(float)out->width, (float)out->height}, tinted, {0}};
+}
+
+// All particles.
+static bool splat(RenderPicture *picture, const GpuProgram *program, float scale, const GpuTarget *out, GpuDraw draw,
+                  RenderError *error) {
+  const RenderParticles *particles = &picture->particles;
+  const SplatParams params = params_of(scale, water_per_chord(scale), out, particles->tinted);
+  draw.program = program;
+  draw.target = out;
+  draw.in.storage[1] = &particles->colours;
+  return splat_spheres(picture, &particles->spheres, particles->count, &params, draw, error);
 }
 
 bool render_splat_surface(RenderPicture *picture, GpuProgram *program, float scale, const GpuTarget *out,
@@ -61,6 +72,38 @@ bool render_splat_thickness(RenderPicture *picture, GpuProgram *program, float s
   gpu_clear_colour(out, 0, nothing);
   const GpuDraw draw = {.blend = GPU_BLEND_ADD, .in.textures = {&picture->background.colour}};
   return splat(picture, program, scale, out, draw, error);
+}
+
+// A particle's cube of edge 2r as a Gaussian: with a standard deviation of r the sum over a lattice is even to 3 %. It is cut
+// off where it has fallen to 4 %, and what that leaves out is made up for.
+static bool splat_gaussians(RenderPicture *picture, const GpuProgram *program, const GpuBuffer *spheres, int32_t count,
+                            bool tinted, GpuDraw draw, RenderError *error) {
+  const float cut = 2.5f, pi = 3.14159265f;                           // standard deviations
+  const float highest = 8 / (2 * pi * (1 - expf(-0.5f * cut * cut))); // metres of water at the middle, in radii
+  const SplatParams params = params_of(cut, highest, draw.target, tinted);
+  const float nothing[4] = {0, 0, 0, 0};
+  gpu_clear_colour(draw.target, 0, nothing);
+  draw.program = program;
+  draw.blend = GPU_BLEND_ADD;
+  draw.in.textures[0] = &picture->background.colour;
+  return splat_spheres(picture, spheres, count, &params, draw, error);
+}
+
+bool render_splat_gaussians(RenderPicture *picture, GpuProgram *program, const GpuBuffer *spheres, int32_t count,
+                            const GpuTarget *out, RenderError *error) {
+  const GpuProgramDesc desc = {.label = "splat Gaussians", .file = "splat.glsl", .defines = "#define GAUSSIAN 1\n"};
+  return gpu_program_prepare(program, &desc, error) &&
+         splat_gaussians(picture, program, spheres, count, false, (GpuDraw){.target = out}, error);
+}
+
+bool render_splat_colours(RenderPicture *picture, GpuProgram *program, const GpuBuffer *spheres,
+                          const GpuBuffer *colours, int32_t count, const GpuTexture *surface, const GpuTarget *out,
+                          RenderError *error) {
+  const GpuProgramDesc desc = {
+      .label = "splat colours", .file = "splat.glsl", .defines = "#define GAUSSIAN 1\n#define TINTED 1\n"};
+  const GpuDraw draw = {.target = out, .in = {.textures = {[1] = surface}, .storage = {[1] = colours}}};
+  return gpu_program_prepare(program, &desc, error) &&
+         splat_gaussians(picture, program, spheres, count, true, draw, error);
 }
 
 bool render_splat_sun(RenderPicture *picture, GpuProgram *program, float scale, const GpuTarget *out,

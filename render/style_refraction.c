@@ -7,6 +7,7 @@
 // Beyond the paper: the default filter (smooth_regression.glsl); splashes are met as the balls that they are instead of by
 // their depths; water is flush with the walls of its container and wets what it touches; rays that leave the water meet
 // the scene's geometry; total internal reflection goes on in the water.
+#include "render/eye.h"
 #include "render/occupancy.h"
 #include "render/scene_rays.h"
 #include "render/style.h"
@@ -109,30 +110,19 @@ static void refraction_destroy(void *state) {
 
 // ---- Passes ----------------------------------------------------------------------------------------------------------
 
-// Is the eye in aggregated water? In a lattice of spacing 2 r the kernel (1 − q²)³ with a support of 4 r sums up to its
-// integral, 64π/315 · (4 r)³, in cubes of (2 r)³; at a flat surface to half of that.
-static bool eye_in_water(const SimFrame *frame, const float eye[3]) {
-  const float support = 4 * frame->particle_radius, most = support * support;
-  float sum = 0;
-  for (int32_t i = 0; i < frame->count; ++i) {
-    const float *p = frame->position + 3 * (size_t)i;
-    const float x = p[0] - eye[0], y = p[1] - eye[1], z = p[2] - eye[2], d2 = x * x + y * y + z * z;
-    if (!(d2 < most) || frame->particle_class[i] != SIM_AGGREGATED) continue;
-    const float a = 1 - d2 / most;
-    sum += a * a * a;
-  }
-  const float lattice = 5.106f;
-  return sum > 0.48f * lattice;
-}
-
 // The particles on the GPU, and the tiles of the picture that they may touch.
 static bool upload(Refraction *s, RenderPicture *picture, RenderError *error) {
   const RenderRefraction *settings = &picture->settings->refraction;
   const RenderQuadrics *q = &s->quadrics;
-  s->submerged = eye_in_water(picture->frame, picture->block.eye);
+  const RenderQuadricSettings shapes = {.scale = settings->scale,
+                                        .lift = settings->lift,
+                                        .splashes_apart = settings->splashes_apart,
+                                        .ball_scale = 1,
+                                        .surface_only = settings->surface_only};
+  s->submerged = render_eye_in_water(picture->frame, picture->block.eye);
   // From within one sees where the air begins, and the edges of large cells there.
   const RenderOccupancyGrain grain = s->submerged ? RENDER_OCCUPANCY_FINE : RENDER_OCCUPANCY_COARSE;
-  return render_quadrics_upload(&s->quadrics, picture->frame, settings, error) &&
+  return render_quadrics_upload(&s->quadrics, picture->frame, &shapes, error) &&
          render_occupancy_upload(&s->occupancy, picture->frame, grain, error) && render_tiles_clear(picture, error) &&
          render_tiles_mark(picture, &(RenderTileMarks){&q->ellipsoids, q->ellipsoid_count, 4, 1}, error) &&
          render_tiles_mark(picture, &(RenderTileMarks){&q->balls, q->ball_count, 2, 1}, error);

@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+extern const RenderStyle style_cartoon;
 extern const RenderStyle style_points;
 extern const RenderStyle style_raycast;
 extern const RenderStyle style_refraction;
@@ -11,6 +12,7 @@ const RenderStyle *const render_styles[] = {
     &style_points,
     &style_refraction,
     &style_raycast,
+    &style_cartoon,
     NULL,
 };
 

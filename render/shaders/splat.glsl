@@ -1,5 +1,5 @@
 // Spheres by ray casting, one quad around each. Compiled as SURFACE (normal, depth and colour of the nearest),
-// THICKNESS (metres of water along the eye's ray, added) or SUN (the same along the sun's rays, and the height of the
+// THICKNESS (metres of water along the eye's ray, added), GAUSSIAN (the same, spread as a Gaussian; TINTED: its colour at the surface) or SUN (the same along the sun's rays, and the height of the
 // nearest surface).
 #include "frame.glsl"
 #include "sphere.glsl"
@@ -11,7 +11,7 @@ layout(std140, binding = 1) uniform Splat {
 
 #ifdef VERTEX_STAGE
 layout(std430, binding = 0) readonly buffer Spheres { vec4 spheres[]; };
-#ifdef SURFACE
+#if defined(SURFACE) || defined(TINTED)
 layout(std430, binding = 1) readonly buffer Colours { vec4 colours[]; };
 flat out vec4 tint;
 #endif
@@ -25,7 +25,7 @@ void main() {
   vec2 corner = CORNERS[gl_VertexID % 6];
   vec4 s = spheres[index];
   float r = s.w * splat.x;
-#ifdef SURFACE
+#if defined(SURFACE) || defined(TINTED)
   tint = colours[index * int(splat_more.x)];
 #endif
 #ifdef SUN
@@ -86,15 +86,44 @@ void main() {
 layout(binding = 0) uniform sampler2D background;
 layout(location = 0) out vec4 thickness;
 
+// Depth of what is behind the water.
+float depth_behind() {
+  float behind = texelFetch(background, ivec2(gl_FragCoord.xy * lens.zw / splat.zw), 0).a;
+  return behind > 0.0 ? behind : FAR;
+}
+
+#ifdef TINTED
+flat in vec4 tint;
+layout(binding = 1) uniform sampler2D surface; // 1 / depth
+#endif
+
+#ifdef GAUSSIAN
+// splat.x is where it is cut off, in standard deviations; splat.y its highest value, in radii.
+void main() {
+  vec3 ray = vec3(at, -1.0);
+  float rr = dot(ray, ray), middle = dot(ray, sphere.xyz) / rr, r = sphere.w / splat.x;
+  vec3 foot = ray * middle - sphere.xyz;
+  float h2 = dot(foot, foot);
+  if (h2 > sphere.w * sphere.w) discard;
+  float seen = clamp(0.5 + (depth_behind() - middle) * sqrt(rr) / (2.0 * r), 0.0, 1.0);
+  float metres = splat.y * r * exp(-0.5 * h2 / (r * r)) * seen;
+#ifdef TINTED
+  float front = texelFetch(surface, ivec2(gl_FragCoord.xy * vec2(textureSize(surface, 0)) / splat.zw), 0).x;
+  float behind = front > 0.0 ? (middle - 1.0 / front) * sqrt(rr) / (6.0 * r) : 0.0;
+  thickness = vec4(tint.rgb, 1.0) * metres * exp(-max(behind, 0.0));
+#else
+  thickness = vec4(metres, 0.0, 0.0, 0.0);
+#endif
+}
+#else
 void main() {
   vec3 ray = vec3(at, -1.0);
   vec2 t = meet(ray);
   if (t.x > t.y) discard;
-  ivec2 pixel = ivec2(gl_FragCoord.xy * lens.zw / splat.zw);
-  float behind = texelFetch(background, pixel, 0).a;
-  float end = min(t.y, behind > 0.0 ? behind : FAR);
+  float end = min(t.y, depth_behind());
   thickness = vec4(max(end - max(t.x, 0.0), 0.0) * length(ray) * splat.y, 0.0, 0.0, 0.0);
 }
+#endif
 #endif
 #endif
 #endif
