@@ -38,7 +38,7 @@ if(NOT LIDO_SANITIZE)
 endif()
 
 # Water at rest looks at rest.
-lido_add_test(app_flicker SOURCES test_flicker.c LIBRARIES lido_test_runner)
+lido_add_test(app_flicker SOURCES test_flicker.c LIBRARIES lido_test_runner lido_app)
 add_test(NAME app_flicker_long COMMAND app_flicker long WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
 set_tests_properties(app_flicker_long PROPERTIES LABELS long TIMEOUT 1800)
 

@@ -225,7 +225,7 @@ static void test_layers(void **state) {
   LIDO(&run, "render", scene, "--frames", "1", SIZE, "-q", "--layer", "smell", "-o", in(folder, "out/x.png"));
   check_said(&run, 2, "--layer smell: style 'refraction' has no such layer; it has: ");
   assert_int_equal(folder_count(in(folder, "out")), 0);
-  LIDO(&run, "render", scene, "--frames", "1", "--style", "cartoon", "-o", in(folder, "out/x.png"));
+  LIDO(&run, "render", scene, "--frames", "1", "--style", "heightfield", "-o", in(folder, "out/x.png"));
   check_said(&run, 2, "style");
 }
 

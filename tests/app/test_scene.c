@@ -501,7 +501,7 @@ static void test_keys_are_known_and_stand_once(void **state) {
 static void test_what_comes_later_is_refused_by_name(void **state) {
   (void)state;
   refused("{\"version\": 1, \"render\": {\"style\": \"heightfield\"}}",
-          "t.json:1: render.style: \"heightfield\" is not available in this version; available: points, refraction, raycast");
+          "t.json:1: render.style: \"heightfield\" is not available in this version; available: points, refraction, raycast, cartoon");
 }
 
 #define OBSTACLE(text) "{\"version\": 1, \"obstacles\": [{\"type\": " text ", \"position\": [1, 1, 0.5]}]}"

@@ -73,9 +73,9 @@ WRONG = [
     ("obstacles.0.type", DELETE), ("obstacles.0.radius", 1), ("obstacles.1.radius", 0), ("obstacles.2.height", DELETE),
     ("obstacles.2.motion", "flying"), ("obstacles.3.name", 3), ("obstacles.4.steps", 0), ("obstacles.4.keys", {}),
     ("obstacles.4.keys.1.time", DELETE), ("obstacles.4.density", 0), ("camera.fov", 1), ("camera.fov", None), ("camera.eye", [1, 2]),
-    ("environment.sky", "blue"), ("environment.floor_level", "x"), ("render.style", "cartoon"),
+    ("environment.sky", "blue"), ("environment.floor_level", "x"), ("render.style", "heightfield"),
     ("render.points.scale", 6), ("render.points.size", 1), ("events.0.time", -1), ("events.0.gravity", [0, 0, 0]),
-    ("events.1.max", DELETE), ("events.3.name", "cartoon"), ("events.4.type", "drag"),
+    ("events.1.max", DELETE), ("events.3.name", "heightfield"), ("events.4.type", "drag"),
     ("events.5.obstacle", None), ("events.5.position", DELETE), ("events.6.on", DELETE), ("events.6.emitter", 1.5),
 ]  # fmt: skip
 

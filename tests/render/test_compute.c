@@ -39,9 +39,9 @@ static void test_styles(void **state) {
   const SimContainer *box = &water.frame.container;
   const float middle = 0.5f * (box->min[0] + box->max[0]), depth = 0.5f * (box->min[2] + box->max[2]);
   const RenderView within = {{middle, box->min[1] + 0.1f, depth}, {box->max[0], box->min[1] + 0.3f, depth}, 70};
-  static const char *const styles[] = {"points", "refraction", "raycast"};
-  for (int k = 0; k < 3; ++k) expect_alike(styles[k], &water.frame, &outside);
-  for (int k = 1; k < 3; ++k) expect_alike(styles[k], &water.frame, &within);
+  static const char *const styles[] = {"points", "refraction", "raycast", "cartoon"};
+  for (int k = 0; k < 4; ++k) expect_alike(styles[k], &water.frame, &outside);
+  for (int k = 1; k < 4; ++k) expect_alike(styles[k], &water.frame, &within);
   test_water_destroy(&water);
 }
 
