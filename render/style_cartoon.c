@@ -4,8 +4,9 @@
 // added up from Gaussians (III-C), and the surface is shaded in a few flat tones, with what is behind or before it (III-D).
 //
 // Beyond the paper: outlines; drops apart from the body of water, so that a stray one smears nothing; maps at half the
-// picture's resolution; smooth outlines of the body (cartoon_tidy.glsl); taps in pairs; curvature flow; tones that still
-// water does not flicker between; water that lies flat on the walls of its container; the rest of the scene drawn as well.
+// picture's resolution; smooth outlines of the body (cartoon_tidy.glsl); planes instead of means in the filter; curvature flow;
+// tones that still water does not flicker between; water that lies flat on the walls of its container; coloured water; the
+// rest of the scene drawn as well.
 #include "render/cartoon_surface.h"
 #include "render/eye.h"
 #include "render/outlines.h"
