@@ -25,8 +25,9 @@ grid cartoon_palettes.jpg 2 lagoon ink lava storm
 }
 grid cartoon_optics.jpg 2 neither reflection refraction both
 
-# Figures 4 and 5: kernels from afar and close up; none, and the adaptive default.
-near='--camera 0.5,0.9,1.5,1.5,0.2,0.3'
+# Figure 5: kernels close up, full and separated; none, curvature flow, and the adaptive default. Without outlines, which
+# would hide the tones.
+near='--camera 0.5,0.9,1.5,1.5,0.2,0.3 --set render.cartoon.outline=0'
 for kernel in 10 20 30; do
   # shellcheck disable=SC2046,SC2086
   {

@@ -39,6 +39,13 @@ vec3 normal_of_side(ivec2 at, ivec2 along, float inverse, float change) {
 vec3 known_normal(ivec2 at) {
   return texelFetch(surface, at, 0).rgb;
 }
+
+// Change, from pixel to pixel, of the inverse depth of a plane with a normal in world axes.
+float slope_along(ivec2 at, ivec2 along, float inverse, vec3 normal) {
+  vec3 n = mat3(world_to_view) * normal;
+  vec2 place = ((vec2(at) + 0.5) / lens.zw * 2.0 - 1.0) * lens.xy;
+  return inverse * dot(n.xy, vec2(along) * 2.0 * lens.xy / lens.zw) / min(dot(n, vec3(place, -1.0)), -1e-6);
+}
 #endif
 
 // The crack between b and c; a and d are the pixels before and behind. Is b nearer than the plane through c and d?
@@ -70,7 +77,9 @@ vec2 crack(ivec2 at, ivec2 along) {
   if (known_c != vec3(0.0) && known_b == vec3(0.0)) return vec2(-c * touching, 0.0);
   if (known_b != vec3(0.0) && known_c != vec3(0.0)) {
     float beside = min(dot(known_normal(at - along), known_b), dot(known_c, known_normal(at + 2 * along)));
-    return vec2(0.0, dot(known_b, known_c) < drawn_ink.a && beside > drawn_ink.a ? 1.5 : 0.0);
+    float slope_b = slope_along(at, along, b, known_b), slope_c = slope_along(at + along, along, c, known_c);
+    float turn = slope_b - slope_c, meet = (c - slope_c - b) / (turn == 0.0 ? 1.0 : turn); // of the planes by those normals
+    return vec2(0.0, dot(known_b, known_c) < drawn_ink.a && beside > drawn_ink.a ? 1.0 + clamp(meet, 0.0, 1.0) : 0.0);
   }
 #endif
   // Both planes meet within the crack; they are seen beside it, and go on as planes, or end, on either side.
