@@ -78,8 +78,10 @@ vec2 crack(ivec2 at, ivec2 along) {
   if (known_b != vec3(0.0) && known_c != vec3(0.0)) {
     float beside = min(dot(known_normal(at - along), known_b), dot(known_c, known_normal(at + 2 * along)));
     float slope_b = slope_along(at, along, b, known_b), slope_c = slope_along(at + along, along, c, known_c);
-    float turn = slope_b - slope_c, meet = (c - slope_c - b) / (turn == 0.0 ? 1.0 : turn); // of the planes by those normals
-    return vec2(0.0, dot(known_b, known_c) < drawn_ink.a && beside > drawn_ink.a ? 1.0 + clamp(meet, 0.0, 1.0) : 0.0);
+    // Where the planes of those normals meet, if that is within the crack.
+    float turn = slope_b - slope_c, meet = (c - slope_c - b) / (turn == 0.0 ? 1.0 : turn);
+    meet = abs(meet - 0.5) < 0.49 ? meet : 0.5;
+    return vec2(0.0, dot(known_b, known_c) < drawn_ink.a && beside > drawn_ink.a ? 1.0 + meet : 0.0);
   }
 #endif
   // Both planes meet within the crack; they are seen beside it, and go on as planes, or end, on either side.
