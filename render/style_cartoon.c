@@ -153,7 +153,6 @@ static bool upload(Cartoon *s, RenderPicture *picture, RenderError *error) {
                                         .surface_only = true};
   const RenderQuadrics *q = &s->quadrics;
   const int32_t scale = settings->half_resolution ? 2 : 1;
-  s->submerged = render_eye_in_water(picture->frame, picture->block.eye);
   // Outlines reach a little beyond the spheres.
   return (s->surface.scale == scale || render_cartoon_surface_resize(&s->surface, picture, scale, error)) &&
          render_quadrics_upload(&s->quadrics, picture->frame, &shapes, error) && upload_body(s, picture, error) &&
@@ -254,13 +253,14 @@ static bool draw_light(Cartoon *s, RenderPicture *picture, RenderError *error) {
   return true;
 }
 
-// Outputs: seen, of the solids alone; inked.
+// Outputs: seen, of the solids alone; inked, if something is seen through the water.
 static bool draw_solids(Cartoon *s, RenderPicture *picture, RenderError *error) {
   const GpuProgramDesc desc = {.label = "cartoon: solids", .file = "cartoon_solids.glsl"};
   if (!gpu_program_prepare(&s->solid_program, &desc, error)) return false;
   gpu_draw(picture->gpu, &(GpuDraw){.program = &s->solid_program,
                                     .target = &s->seen_target,
                                     .in = {.textures = {&picture->background.colour}, .frame = &picture->uniforms}});
+  if (!picture->settings->cartoon.refraction && !s->submerged) return true;
   gpu_texture_copy(&picture->background.colour, &s->inked);
   return render_outlines_draw(&s->outlines, picture, (RenderOutlined){&s->seen, false}, &s->inked_target, error);
 }
@@ -305,6 +305,7 @@ static bool cartoon_draw(void *state, RenderPicture *picture, RenderError *error
   Cartoon *s = state;
   Gpu *gpu = picture->gpu;
   const float nothing[4] = {0};
+  s->submerged = picture->particles.count > 0 && render_eye_in_water(picture->frame, picture->block.eye);
   gpu_pass_begin(gpu, "solids");
   gpu_clear_colour(&s->light_target, 1, nothing);
   bool ok = draw_solids(s, picture, error);

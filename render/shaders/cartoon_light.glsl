@@ -118,9 +118,10 @@ void main() {
   surface = vec4(0.0, 0.0, 0.0, behind.a);
 
 #ifdef SUBMERGED
+  // To an eye in the water its own colour would hide all: it is seen through four times as far.
   float level = level_of_light(sun_direction.y);
   light = mix(drawn_light(level) * paint(region_of_light(level)), texelFetch(inked, ivec2(gl_FragCoord.xy), 0).rgb,
-              exp(-metres / transparency.z));
+              exp(-metres / (4.0 * transparency.z)));
   tone = 1.0 + float(region_of_light(level));
 #else
   Layer body = cut_by_walls(layer_at(body_surface, body_map, 2.0 * particle.x), ray);

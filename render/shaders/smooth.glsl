@@ -1,5 +1,5 @@
-// Antialiased edges and dither, which FLAT colours do without: the last pass. Where brightness changes sharply, the picture is blended along the edge
-// (after Lottes, "FXAA", 2009: direction from the four diagonal neighbours, two and four taps along it).
+// Antialiased edges and dither, which FLAT colours do without: the last pass. Where brightness changes sharply, the picture is
+// blended along the edge (after Lottes, "FXAA", 2009: direction from the four diagonal neighbours, two and four taps along it).
 #include "frame.glsl"
 #include "screen.glsl"
 

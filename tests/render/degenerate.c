@@ -1,5 +1,7 @@
 #include "tests/render/degenerate.h"
 
+#include <float.h>
+
 #include <math.h>
 #include <stdlib.h>
 
@@ -32,6 +34,10 @@ const SimContainer degenerate_containers[DEGENERATE_CONTAINERS] = {
     {{0, 0, 0}, {0, 0, 0}, SIM_CONTAINER_BOX},          {{1, 1, 1}, {0, 0, 0}, SIM_CONTAINER_BOX},
     {{-1e30f, 0, 0}, {1e30f, 1, 1}, SIM_CONTAINER_BOX}, {{0, 0, 0}, {1e-30f, 1e-30f, 1e-30f}, SIM_CONTAINER_BOX},
     {{5, 5, 5}, {6, 6, 6}, SIM_CONTAINER_BOX},          {{-50, -50, -50}, {50, 50, 50}, SIM_CONTAINER_BOX}};
+
+const float degenerate_places[DEGENERATE_PLACES] = {NAN, INFINITY, -INFINITY, FLT_MAX, -FLT_MAX, 2e6f};
+const float degenerate_radii[DEGENERATE_RADII] = {0, NAN, INFINITY, -1, FLT_MAX, FLT_MIN, 30, 1e-6f, DEGENERATE_RADIUS};
+const float degenerate_frame_radii[DEGENERATE_FRAME_RADII] = {NAN, 0, -1, INFINITY, 1e-9f, 1e-4f, 1, 1e6f};
 
 const int32_t degenerate_sizes[DEGENERATE_SIZES][2] = {{1, 1}, {1, 40}, {40, 1}, {3, 2}, {33, 31}, {65, 97}};
 

@@ -17,6 +17,11 @@ extern const RenderView degenerate_eyes[DEGENERATE_EYES]; ///< at that tank; the
 extern const SimContainer degenerate_containers[DEGENERATE_CONTAINERS];
 extern const int32_t degenerate_sizes[DEGENERATE_SIZES][2]; ///< of pictures
 
+/// Numbers that nobody checked: coordinates; radii of particles, the last of which is sensible; radii of a frame.
+enum { DEGENERATE_PLACES = 6, DEGENERATE_RADII = 9, DEGENERATE_FRAME_RADII = 8 };
+extern const float degenerate_places[DEGENERATE_PLACES], degenerate_radii[DEGENERATE_RADII],
+    degenerate_frame_radii[DEGENERATE_FRAME_RADII];
+
 /// No layer holds what is not a number.
 void degenerate_expect_layer(Harness *harness, const char *what, const char *layer, const SimFrame *frame,
                              const RenderView *view, const RenderSettings *settings);

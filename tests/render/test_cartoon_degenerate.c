@@ -123,7 +123,7 @@ static void test_invalid_particles(void **state) {
   DrawnWater *clean = tank_create(), *dirty = tank_create();
   add_pool(clean);
   add_pool(dirty);
-  static const float bad[] = {NAN, INFINITY, -INFINITY, FLT_MAX, -FLT_MAX, 2e6f};
+  const float *bad = degenerate_places;
   for (int i = 0; i < 36; ++i) {
     const int32_t n = drawn_add(dirty, 0.5f, 0.6f, 0.25f, i % 2 ? SIM_SPLASH : SIM_AGGREGATED);
     dirty->position[3 * n + i % 3] = bad[i % 6];
@@ -142,14 +142,12 @@ static void test_odd_radii(void **state) {
   Harness *harness = *state;
   DrawnWater *w = tank_create();
   add_pool(w);
-  static const float radii[] = {0, NAN, INFINITY, -1, FLT_MAX, FLT_MIN, 30, 1e-6f, RADIUS};
-  for (int32_t i = 0; i < w->frame.count; ++i) w->radius[i] = radii[i % 9];
+  for (int32_t i = 0; i < w->frame.count; ++i) w->radius[i] = degenerate_radii[i % DEGENERATE_RADII];
   w->frame.radius = w->radius;
   expect_clean_always(harness, "radii", &w->frame, &degenerate_view);
   w->frame.radius = NULL;
-  static const float own[] = {NAN, 0, -1, INFINITY, 1e-9f, 1e6f};
-  for (size_t k = 0; k < sizeof own / sizeof *own; ++k) {
-    w->frame.particle_radius = own[k];
+  for (int k = 0; k < DEGENERATE_FRAME_RADII; ++k) {
+    w->frame.particle_radius = degenerate_frame_radii[k];
     expect_clean(harness, "a frame's radius", &w->frame, &degenerate_view);
   }
   free(w);

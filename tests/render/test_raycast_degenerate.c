@@ -121,7 +121,7 @@ static void test_none_is_the_background(void **state) {
 static void test_invalid_particles(void **state) {
   Harness *harness = *state;
   Hand *clean = hand_create(), *dirty = hand_create();
-  static const float bad[] = {NAN, INFINITY, -INFINITY, FLT_MAX, -FLT_MAX, 2e6f};
+  const float *bad = degenerate_places;
   hand_add_block(clean);
   hand_add_block(dirty);
   for (int i = 0; i < 18; ++i) {
@@ -160,16 +160,14 @@ static void test_odd_radii(void **state) {
   Harness *harness = *state;
   Hand *h = hand_create();
   hand_add_block(h);
-  static const float radii[] = {0, NAN, INFINITY, -1, FLT_MAX, FLT_MIN, 30, 1e-6f, RADIUS};
-  for (int i = 0; i < 27; ++i) h->radius[i] = radii[i % 9];
+  for (int i = 0; i < 27; ++i) h->radius[i] = degenerate_radii[i % DEGENERATE_RADII];
   h->frame.radius = h->radius;
   expect_clean(harness, "radii", &h->frame, &degenerate_view);
   h->frame.radius = NULL;
-  static const float own[] = {NAN, 0, -1, INFINITY, 1e-9f, 1e-4f, 1, 1e6f};
-  for (int k = 0; k < 8; ++k) {
+  for (int k = 0; k < DEGENERATE_FRAME_RADII; ++k) {
     char what[48];
-    snprintf(what, sizeof what, "a frame's radius of %g", (double)own[k]);
-    h->frame.particle_radius = own[k];
+    snprintf(what, sizeof what, "a frame's radius of %g", (double)degenerate_frame_radii[k]);
+    h->frame.particle_radius = degenerate_frame_radii[k];
     expect_clean(harness, what, &h->frame, &degenerate_view);
   }
   free(h);

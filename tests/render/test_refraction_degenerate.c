@@ -118,7 +118,7 @@ static void test_invalid_particles(void **state) {
   Hand *clean = hand_create(), *dirty = hand_create();
   add_pool(clean);
   add_pool(dirty);
-  static const float bad[] = {NAN, INFINITY, -INFINITY, FLT_MAX, -FLT_MAX, 2e6f};
+  const float *bad = degenerate_places;
   for (int i = 0; i < 36; ++i) {
     const SimClass class = i % 2 ? SIM_SPLASH : SIM_AGGREGATED;
     const int32_t n = add(dirty, 0.5f, 0.6f, 0.25f, class);
@@ -157,14 +157,12 @@ static void test_odd_radii(void **state) {
   Harness *harness = *state;
   Hand *h = hand_create();
   add_pool(h);
-  static const float radii[] = {0, NAN, INFINITY, -1, FLT_MAX, FLT_MIN, 30, 1e-6f, RADIUS};
-  for (int32_t i = 0; i < h->frame.count; ++i) h->radius[i] = radii[i % 9];
+  for (int32_t i = 0; i < h->frame.count; ++i) h->radius[i] = degenerate_radii[i % DEGENERATE_RADII];
   h->frame.radius = h->radius;
   expect_clean_always(harness, "radii", &h->frame, &degenerate_view);
   h->frame.radius = NULL;
-  static const float own[] = {NAN, 0, -1, INFINITY, 1e-9f, 1e6f};
-  for (size_t k = 0; k < sizeof own / sizeof *own; ++k) {
-    h->frame.particle_radius = own[k];
+  for (int k = 0; k < DEGENERATE_FRAME_RADII; ++k) {
+    h->frame.particle_radius = degenerate_frame_radii[k];
     expect_clean_always(harness, "a frame's radius", &h->frame, &degenerate_view);
   }
   free(h);
