@@ -8,6 +8,8 @@
 //   where a box stands on the floor. A body that reaches through a face, a pillar sunk into the floor, is as good as
 //   independent of that face, as the faces are of each other: (1 − F) (1 − s) is free. How far it reaches through the
 //   face, in spacings, weighs between the two: w in [0, 1], and A − s Π (1 − w_k F_k) is free.
+// - A body wholly outside of the container, the deck around a pool, counts for nothing: the face before it is what the
+//   water feels, and it would be felt twice.
 // - Several bodies: each leaves the same part of what the others leave free. Those that touch each other count a little
 //   less in the edge where they meet than they should, as if each reached into the other.
 #include "sim/boundary.h"
@@ -138,7 +140,19 @@ static bool in_container(const SimBoundary *boundary, float clearance, const flo
 
 // ---- Bodies ----------------------------------------------------------------------------------------------------------
 
+bool sim_boundary_beyond(const SimContainer *container, const SimBody *body, float tolerance) {
+  float low[3], high[3], axis[2], radius, off[2];
+  sim_body_box(body, low, high);
+  for (int k = 0; k < 3; k++)
+    if (low[k] >= container->max[k] - tolerance || high[k] <= container->min[k] + tolerance) return true;
+  if (container->shape != SIM_CONTAINER_GLASS) return false;
+  glass_axis(container, axis, &radius);
+  for (int k = 0; k < 2; k++) off[k] = sim_larger(0, sim_larger(low[2 * k] - axis[k], axis[k] - high[2 * k]));
+  return hypotf(off[0], off[1]) >= radius - tolerance;
+}
+
 static bool near_body(const SimBody *body, const float point[3], float reach) {
+  if (body->beyond) return false;
   float d2 = 0, r = body->bound + reach;
   for (int k = 0; k < 3; k++) d2 += (point[k] - body->position[k]) * (point[k] - body->position[k]);
   return d2 < r * r;
@@ -154,7 +168,8 @@ static void reach_through(const SimBoundary *boundary, const SimBody *body, Weig
   if (c->shape == SIM_CONTAINER_GLASS) {
     float axis[2], radius, x = body->position[0], z = body->position[2];
     glass_axis(c, axis, &radius);
-    float corner = hypotf(sim_larger(axis[0] - low[0], high[0] - axis[0]), sim_larger(axis[1] - low[2], high[2] - axis[1]));
+    float corner =
+        hypotf(sim_larger(axis[0] - low[0], high[0] - axis[0]), sim_larger(axis[1] - low[2], high[2] - axis[1]));
     weight[0][1] = sim_smaller(corner, hypotf(x - axis[0], z - axis[1]) + body->bound) - radius;
     weight[0][0] = weight[2][0] = weight[2][1] = 0;
   }
@@ -268,10 +283,21 @@ static float farthest_move(const SimBody *body) {
   return sqrtf(d2) + sqrtf(0.5f * turned2) * body->bound;
 }
 
+// Whether a body that stands still is farther than `reach` from the box along one axis: a long one fills little of its ball.
+static bool beside(const SimBody *body, const float low[3], const float high[3], float reach) {
+  float from[3], to[3];
+  if (body->moves || body->mesh) return false;
+  sim_body_box(body, from, to);
+  for (int k = 0; k < 3; k++)
+    if (from[k] - reach > high[k] || to[k] + reach < low[k]) return true;
+  return false;
+}
+
 static void select_bodies(const SimBoundary *boundary, const float low[3], const float high[3], float reach,
                           SimNear *near) {
   near->count = 0;
   for (int32_t b = 0; b < boundary->body_count; b++) {
+    if (boundary->bodies[b].beyond) continue;
     float centre[3], r, d2 = 0;
     swept_ball(&boundary->bodies[b], centre, &r);
     r += reach;
@@ -279,7 +305,7 @@ static void select_bodies(const SimBoundary *boundary, const float low[3], const
       float outside = sim_larger(0, sim_larger(low[k] - centre[k], centre[k] - high[k]));
       d2 += outside * outside;
     }
-    if (!(d2 <= r * r)) continue;
+    if (!(d2 <= r * r) || beside(&boundary->bodies[b], low, high, reach)) continue;
     if (near->count == SIM_MAX_NEAR) {
       near->count = -1;
       return;

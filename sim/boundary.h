@@ -68,6 +68,9 @@ void sim_boundary_solid(const SimBoundary *boundary, const SimNear *near, const 
 /// pushed ahead. Returns the floating body that had a say, −1: none. `near` may be NULL. A NaN stays a NaN.
 int32_t sim_boundary_clamp(const SimBoundary *boundary, const SimNear *near, const float from[3], float to[3]);
 
+/// Whether a body stands wholly outside of the container's walls, as far as the box around it tells.
+bool sim_boundary_beyond(const SimContainer *container, const SimBody *body, float tolerance);
+
 /// Whether a particle may start here: inside the container, touching no wall or obstacle by more than a tenth of the
 /// clearance.
 bool sim_boundary_free(const SimBoundary *boundary, const float point[3]);

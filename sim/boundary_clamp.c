@@ -63,6 +63,7 @@ static void path_in_body(const SimBody *body, const float from[3], const float t
 
 // Whether the particle, seen from the body's centre, passes within reach of the ball around the body.
 static bool passes_ball(const SimBody *body, const float from[3], const float to[3], float reach) {
+  if (body->beyond) return false;
   const float *old = body->moves ? body->old_position : body->position;
   float a[3], d[3], along = 0, length2 = 0, distance2 = 0, r = body->bound + reach;
   for (int k = 0; k < 3; k++) {

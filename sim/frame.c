@@ -7,6 +7,7 @@
 
 #include "sim/memory.h"
 #include "sim/parallel.h"
+#include "sim/ripple.h"
 #include "sim/surface.h"
 #include "sim/world.h"
 
@@ -22,6 +23,8 @@ struct SimFrameBuffer {
   float *position, *velocity, *density, *colour, *radius;
   uint8_t *particle_class, *near_surface, *exposed;
   float *smoothed, *ellipsoid, *height, *normal;
+  uint8_t *node_state; ///< of the height field, to fill it with
+  int32_t *node_queue;
   SimObstacle *obstacles;
 };
 
@@ -33,11 +36,12 @@ void sim_frame_buffer_destroy(SimFrameBuffer *buffer) {
   if (!buffer) return;
   sim_grid_free(&buffer->sort);
   sim_neighbours_free(&buffer->lists);
-  void *blocks[] = {buffer->axis[0],      buffer->axis[1], buffer->axis[2],  buffer->four,
-                    buffer->cell_start,   buffer->id,      buffer->position, buffer->velocity,
-                    buffer->density,      buffer->colour,  buffer->radius,   buffer->particle_class,
-                    buffer->near_surface, buffer->exposed, buffer->smoothed, buffer->ellipsoid,
-                    buffer->height,       buffer->normal,  buffer->obstacles};
+  void *blocks[] = {buffer->axis[0],      buffer->axis[1], buffer->axis[2],   buffer->four,
+                    buffer->cell_start,   buffer->id,      buffer->position,  buffer->velocity,
+                    buffer->density,      buffer->colour,  buffer->radius,    buffer->particle_class,
+                    buffer->near_surface, buffer->exposed, buffer->smoothed,  buffer->ellipsoid,
+                    buffer->height,       buffer->normal,  buffer->obstacles, buffer->node_state,
+                    buffer->node_queue};
   for (size_t k = 0; k < sizeof blocks / sizeof *blocks; k++) sim_release(blocks[k]);
   sim_release(buffer);
 }
@@ -106,17 +110,20 @@ static void lap(SimProfile *profile, SimStage stage, double *since) {
 }
 
 static bool height_field(SimFrameBuffer *buffer, const SimSurface *surface, SimError *error) {
-  SimFrame *frame = &buffer->frame;
-  // The field covers the container, where there is one: its nodes stay in place from frame to frame.
-  const float *low = frame->has_container ? frame->container.min : frame->bounds_min;
-  const float *high = frame->has_container ? frame->container.max : frame->bounds_max;
-  size_t nodes = (size_t)sim_surface_height_nodes(surface, low, high, &frame->height_field);
-  if (!sim_reserve((void **)&buffer->height, nodes, sizeof(float)) ||
-      !sim_reserve((void **)&buffer->normal, 3 * nodes, sizeof(float)))
+  SimHeightField *field = &buffer->frame.height_field;
+  size_t nodes = (size_t)sim_surface_height_nodes(surface, field);
+  if (!reserve_floats(&buffer->height, nodes) || !reserve_floats(&buffer->normal, 3 * nodes) ||
+      (surface->body_count > 0 && (!sim_reserve((void **)&buffer->node_state, nodes, 1) ||
+                                   !sim_reserve((void **)&buffer->node_queue, nodes, sizeof(int32_t)))))
     return sim_fail(error, "out of memory");
-  sim_surface_heightfield(surface, low[1], &frame->height_field, buffer->height, buffer->normal);
-  frame->height_field.height = buffer->height;
-  frame->height_field.normal = buffer->normal;
+  if (surface->ripple)
+    sim_ripple_heights(surface->ripple, surface->container, field, buffer->frame.container.min[1], surface->threads,
+                       buffer->height, buffer->normal);
+  else
+    sim_surface_heightfield(surface, buffer->frame.container.min[1], field,
+                            &(SimHeightArrays){buffer->height, buffer->normal, buffer->node_state, buffer->node_queue});
+  field->height = buffer->height;
+  field->normal = buffer->normal;
   return true;
 }
 
@@ -164,10 +171,12 @@ static SimSurface surface_of(const SimFrameBuffer *buffer, const SimWide *wide, 
                         .count = frame->count,
                         .threads = buffer->threads,
                         .spacing = 2 * frame->particle_radius,
+                        .node_spacing = 2 * frame->particle_radius,
                         .position = {position[0], position[1], position[2]},
                         .four = four,
                         .grid = &frame->grid,
-                        .lists = lists};
+                        .lists = lists,
+                        .container = frame->has_container ? &frame->container : NULL};
   memcpy(surface.bounds_min, frame->bounds_min, sizeof surface.bounds_min);
   memcpy(surface.bounds_max, frame->bounds_max, sizeof surface.bounds_max);
   return surface;
@@ -310,6 +319,15 @@ const SimFrame *sim_world_frame(SimWorld *world, unsigned needs, SimFrameBuffer 
   bounds_of(frame);
   SimSurface surface;
   if (!world_surface(world, needs, buffer, &surface, error)) return NULL;
+  SimRipple ripple;
+  if (world->def.ripple) {
+    sim_ripple_at(&world->def, world->time, &ripple);
+    surface.ripple = &ripple;
+    surface.node_spacing = sim_ripple_spacing(&world->def);
+  } else {
+    surface.bodies = world->bodies;
+    surface.body_count = world->def.obstacle_count;
+  }
   lap(&world->profile, SIM_STAGE_frame, &since);
   return run_surface_stages(buffer, &surface, needs, false, NULL, &world->profile, error) ? frame : NULL;
 }

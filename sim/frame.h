@@ -39,11 +39,18 @@ typedef struct SimGrid {
 
 /// The free surface as a height over the floor, on the nodes of a regular grid in x and z
 /// (Cords & Staadt 2007, Eq. 5). Node (i, k) is at x = origin[0] + i·spacing, z = origin[1] + k·spacing.
+///
+/// Where there is a container, nodes span it, so that they stay in place from frame to frame: the first and the last ones stand on
+/// its walls (those farthest along the shorter side may stand behind, by less than a spacing, where no spacing divides both sides),
+/// and water is level up to them. Around a glass they span the square; those up to 1½ spacings outside the wall are
+/// mirror images of the water inside, so that cells on the rim are whole, and farther out there is no water. Without a
+/// container they span the particles and two or three spacings around. Where an obstacle stands in the water, the surface goes
+/// on through it. One that lies just under the surface leaves it as the water above says.
 typedef struct SimHeightField {
   int32_t size[2];             ///< number of nodes along x and z; 0 when it was not asked for
   float origin[2];             ///< m, x and z of node (0, 0)
   float spacing;               ///< m, between neighbouring nodes
-  const float *height;         ///< m, (size[1], size[0]); the lowest y of the frame's bounds where there is no water
+  const float *height;         ///< m, (size[1], size[0]); container.min[1], the lowest y, where there is no water
   const float *normal;         ///< unit, (size[1], size[0], 3); (0, 1, 0) where there is no water
 } SimHeightField;
 

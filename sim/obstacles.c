@@ -208,9 +208,21 @@ static float local_solid(const SimBody *body, const SimWall *wall, const float p
   return sim_mesh_solid(body->mesh, p, g);
 }
 
+// Whether a point lies so far beside a body, along one of its own axes, that it has no share there. Bodies are slender, and the
+// ball around them says little.
+static bool out_of_reach(const SimBody *body, const float p[3], float reach) {
+  if (body->shape == SIM_SPHERE || body->shape == SIM_MESH) return false;
+  float across = body->shape == SIM_BOX || body->shape == SIM_STAIRS ? body->half[2] : body->half[0];
+  return fabsf(p[0]) > body->half[0] + reach || fabsf(p[1]) > body->half[1] + reach || fabsf(p[2]) > across + reach;
+}
+
 float sim_body_solid(const SimBody *body, const SimWall *wall, const float point[3], float gradient[3]) {
   float p[3], g[3] = {0};
   to_body(body, point, p);
+  if (out_of_reach(body, p, wall->reach)) {
+    gradient[0] = gradient[1] = gradient[2] = 0;
+    return 0;
+  }
   float share = local_solid(body, wall, p, g);
   sim_to_world(body->rotation, g, gradient);
   return share;

@@ -18,6 +18,7 @@ typedef struct SimBody {
   float rotation[9];  ///< row-major, from the body's axes to the world's
   float bound;        ///< m, radius of a ball around the body
   bool moves, floats; ///< the rest, but for friction, is only read where `moves` is set
+  bool beyond;        ///< it stands outside of the container: no particle meets it
   float friction;     ///< [0, 1]
   float velocity[3];  ///< m/s, of the centre, during the present substep
   float spin[3];      ///< rad/s, about the centre, in the world's axes

@@ -85,6 +85,16 @@ typedef struct SimSinkDef {
   float min[3], max[3];        ///< m, min < max
 } SimSinkDef;
 
+/// A wave on a ripple's surface: a small one on water of the ripple's depth d, ω² = g k tanh(k d), k = 2π/wavelength.
+typedef struct SimWaveDef {
+  float amplitude;             ///< m, half the height from trough to crest, [0, 1000]
+  float wavelength;            ///< m, [two particle radii, 1e6]
+  float direction[2];          ///< along x and z, where it goes to; any length but 0
+  float phase;                 ///< rad, of the cosine at the origin at time 0
+  bool standing;               ///< it swings where it is: amplitude · cos(k·x + phase) · cos(ω t)
+} SimWaveDef;
+#define SIM_MAX_WAVES 64
+
 typedef enum SimMotion {
   SIM_STATIC = 0,
   SIM_SCRIPTED = 1,            ///< follows its keys and its stroke, whatever the water does
@@ -156,6 +166,11 @@ typedef struct SimWorldDef {
                                ///< 0 (the default): SIM_MAX_PARTICLES. Memory for them is set aside where there are emitters
   bool reuse;                  ///< at max_particles emitters and pouring take away the particles that came first, never those
                                ///< of the start; default false
+  bool ripple;                 ///< the water is a sum of waves and has no particles: frames have a height field only. No blocks,
+                               ///< drops, emitters, sinks or floating obstacles beside it. Default false
+  float ripple_level;          ///< m, y of its surface at rest; waves must neither reach the floor nor the container's upper end
+  int32_t wave_count;          ///< [0, SIM_MAX_WAVES]
+  const SimWaveDef *waves;     ///< (wave_count), copied
   float colour_diffusion;      ///< m²/s, how fast colours of neighbouring water mix, default 0, range [0, 10]
   int32_t obstacle_count;
   const SimObstacleDef *obstacles; ///< (obstacle_count), copied, their meshes too

@@ -7,6 +7,7 @@
 #ifndef LIDO_SIM_SURFACE_H
 #define LIDO_SIM_SURFACE_H
 
+#include "sim/boundary.h"
 #include "sim/kernels.h"
 #include "sim/neighbours.h"
 
@@ -24,6 +25,11 @@ typedef struct SimSurface {
   const SimGrid *grid;      ///< cells of at least SIM_SURFACE_REACH spacings
   const SimNeighbours *lists;         ///< of exactly SIM_SURFACE_REACH spacings
   float bounds_min[3], bounds_max[3]; ///< m, around the positions
+  const SimContainer *container;      ///< what holds the water; NULL: nothing is known to
+  int32_t body_count;
+  const SimBody *bodies; ///< (body_count), obstacles in the water
+  const struct SimRipple *ripple; ///< the water where it is a sum of waves; NULL: particles
+  float node_spacing;             ///< m, of the height field's nodes
 } SimSurface;
 
 /// A particle of less than this share of the rest density is a splash.
@@ -74,19 +80,43 @@ typedef struct SimEllipsoidContext {
 /// near_surface[i] = 1 where the particle can be seen from outside the water.
 void sim_surface_flags(const SimSurface *surface, const uint8_t *exposed, uint8_t *near_surface);
 
-/// The nodes of a height field over the given bounds. Returns their number.
-int64_t sim_surface_height_nodes(const SimSurface *surface, const float low[3], const float high[3],
-                                 SimHeightField *field);
-/// Fill heights and normals; `floor` is the height where there is no water.
-void sim_surface_heightfield(const SimSurface *surface, float floor, const SimHeightField *field, float *height,
-                             float *normal);
+/// The nodes of a height field: over the container, where there is one, so that they stay in place from frame to frame; else
+/// over the particles and what they reach. Returns their number.
+int64_t sim_surface_height_nodes(const SimSurface *surface, SimHeightField *field);
 
-/// What the kernel of the heights reads.
+/// m, x and z of the middle of a glass. Returns its radius; 0: the container is a box, or there is none.
+float sim_height_glass(const SimContainer *container, float axis[2]);
+
+/// Where a height field is written, and room to work in: one element a node (`normal`: three). The last two are needed where
+/// there are bodies.
+typedef struct SimHeightArrays {
+  float *height, *normal;
+  uint8_t *state;
+  int32_t *queue;
+} SimHeightArrays;
+
+/// Fill heights and normals; `floor` is the height where there is no water.
+void sim_surface_heightfield(const SimSurface *surface, float floor, const SimHeightField *field,
+                             const SimHeightArrays *arrays);
+
+/// What the kernels of the height field read.
 typedef struct SimHeightContext {
   const SimSurface *surface;
   const SimHeightField *field;
   float radius, step, iso, floor; ///< m, m, iso-value, m
+  const SimContainer *walls;      ///< the mirrors; NULL: none
+  float axis[2], glass;           ///< m, x and z of the middle and radius of a round glass; 0: it is a box
+  const SimBoundary *solids;      ///< bodies, and a wall for the water that φ is a sum over; NULL: none
   float *height, *normal;
 } SimHeightContext;
+
+/// Whether a node lies outside a glass, farther than those that a cell on its rim needs.
+static inline bool sim_height_beyond(const SimHeightContext *c, float x, float z) {
+  float dx = x - c->axis[0], dz = z - c->axis[1], most = c->glass + 1.5f * c->field->spacing;
+  return c->glass > 0 && dx * dx + dz * dz > most * most;
+}
+
+/// Let the surface go on through bodies and up to them: see surface_height_fill.c.
+void sim_surface_height_fill(const SimHeightContext *context, const SimHeightArrays *arrays);
 
 #endif

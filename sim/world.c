@@ -79,6 +79,7 @@ static bool copy_def(SimWorld *world, const SimWorldDef *def) {
       !copy_array((void **)&world->drops, def->drops, def->drop_count, sizeof(SimDropDef)) ||
       !copy_array((void **)&world->emitter_defs, def->emitters, def->emitter_count, sizeof(SimEmitterDef)) ||
       !copy_array((void **)&world->sinks, def->sinks, def->sink_count, sizeof(SimSinkDef)) ||
+      !copy_array((void **)&world->waves, def->waves, def->wave_count, sizeof(SimWaveDef)) ||
       !copy_array((void **)&world->obstacle_defs, def->obstacles, def->obstacle_count, sizeof(SimObstacleDef)) ||
       !(world->obstacles = sim_allocate((size_t)def->obstacle_count * sizeof(SimObstacle))) ||
       !(world->bodies = sim_allocate((size_t)def->obstacle_count * sizeof(SimBody))) ||
@@ -89,6 +90,7 @@ static bool copy_def(SimWorld *world, const SimWorldDef *def) {
   world->def.drops = world->drops;
   world->def.emitters = world->emitter_defs;
   world->def.sinks = world->sinks;
+  world->def.waves = world->waves;
   world->def.obstacles = world->obstacle_defs;
   for (int32_t b = 0; b < def->obstacle_count; b++) {
     SimObstacle *obstacle = &world->obstacle_defs[b].body;
@@ -96,6 +98,8 @@ static bool copy_def(SimWorld *world, const SimWorldDef *def) {
     world->obstacles[b] = *obstacle;
     world->bodies[b] = sim_body_make(obstacle, world->meshes[b]);
     world->bodies[b].friction = def->obstacles[b].friction;
+    world->bodies[b].beyond = def->obstacles[b].motion == SIM_STATIC &&
+                              sim_boundary_beyond(&def->container, &world->bodies[b], 1e-3f * def->particle_radius);
   }
   return true;
 }
@@ -209,6 +213,7 @@ void sim_world_destroy(SimWorld *world) {
   sim_release(world->drops);
   sim_release(world->emitter_defs);
   sim_release(world->sinks);
+  sim_release(world->waves);
   sim_release(world->obstacles);
   sim_release(world->obstacle_defs);
   sim_release(world->bodies);

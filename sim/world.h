@@ -15,6 +15,7 @@ struct SimWorld {
   SimDropDef *drops;
   SimEmitterDef *emitter_defs;
   SimSinkDef *sinks;
+  SimWaveDef *waves;
   SimObstacleDef *obstacle_defs;
   SimObstacle *obstacles;      ///< with their present poses
   SimBody *bodies;

@@ -3,6 +3,7 @@
 #include <stdio.h>
 
 #include "sim/mesh_topology.h"
+#include "sim/ripple.h"
 #include "sim/world.h"
 
 SimObstacleDef sim_default_obstacle_def(void) {
@@ -255,7 +256,7 @@ bool sim_def_check(const SimWorldDef *def, SimError *error) {
   if (!def || def->cookie != SIM_DEF_COOKIE) return sim_fail(error, "the Def was not made by sim_default_world_def");
   if (!sim_method(def->solver)) return sim_fail(error, "unknown solver %d", (int)def->solver);
   if (!check_numbers(def, error) || !check_container(def, error) || !check_counts(def, error)) return false;
-  if (!check_sources(def, error)) return false;
+  if (!check_sources(def, error) || !sim_ripple_check(def, error)) return false;
   for (int32_t b = 0; b < def->obstacle_count; b++)
     if (!check_obstacle(&def->obstacles[b], b, error)) return false;
   if (!check_meshes(def, error)) return false;

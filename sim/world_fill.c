@@ -259,6 +259,7 @@ void sim_fill_jitter(SimWorld *world) {
 
 static bool may_add(const SimWorld *world, SimError *error) {
   if (world->failed && error) *error = world->failure;
+  if (!world->failed && world->def.ripple) return sim_fail(error, "a ripple has no particles, none can be added");
   return !world->failed;
 }
 

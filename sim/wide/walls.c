@@ -31,7 +31,7 @@ static void box_solid(const SimStep *step, const SimF own[4], SimF solid[4]) {
 }
 
 // The bodies to look at between `from` and `to`; NULL, all of them, where there are so few that choosing is dearer.
-#define FEW_BODIES 4
+#define FEW_BODIES 2
 static const SimNear *choose(const SimBoundary *boundary, const SimF from[3], const SimF to[3], int32_t count,
                              SimNear *near) {
   if (boundary->body_count <= FEW_BODIES) return NULL;

@@ -87,7 +87,7 @@ static void check_level(float radius) {
   const SimHeightField *field = &frame->height_field;
   double level = 0;
   int nodes = 0;
-  for (int k = 2; k < field->size[1] - 2; k++) // away from walls, where the field is short of particles
+  for (int k = 2; k < field->size[1] - 2; k++)
     for (int i = 2; i < field->size[0] - 2; i++, nodes++) level += (double)field->height[k * field->size[0] + i];
   level /= nodes;
   print_message("radius %.4f m: level %.4f m of 0.8\n", (double)radius, level);

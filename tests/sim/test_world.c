@@ -478,6 +478,44 @@ static void a_diverging_solver_is_caught(void **state) {
   sim_world_destroy(world);
 }
 
+// Half a second of water that falls over, beside four walls and a floor of bodies, moved towards it by `inwards`.
+static uint64_t hash_in_walls(SimContainerShape shape, int body_count, float inwards) {
+  SimWorldDef def = small_def();
+  def.container.shape = shape;
+  SimObstacleDef bodies[6];
+  for (int b = 0; b < 6; b++) {
+    const float *low = def.container.min, *high = def.container.max;
+    int axis = b / 2;
+    bodies[b] = sim_default_obstacle_def();
+    bodies[b].body.shape = SIM_BOX;
+    for (int k = 0; k < 3; k++) {
+      bodies[b].body.position[k] = 0.5f * (low[k] + high[k]);
+      bodies[b].body.size[k] = k == axis ? 0.3f : 2;
+    }
+    bodies[b].body.position[axis] = b % 2 ? high[axis] + 0.15f - inwards : low[axis] - 0.15f + inwards;
+  }
+  def.obstacles = bodies;
+  def.obstacle_count = body_count;
+  SimWorld *world = test_create(&def);
+  SimFrameBuffer *buffer = sim_frame_buffer_create();
+  test_advance(world, 30);
+  uint64_t hash = test_hash(test_frame(world, 0, buffer));
+  sim_frame_buffer_destroy(buffer);
+  sim_world_destroy(world);
+  return hash;
+}
+
+static void bodies_around_the_container_change_nothing(void **state) {
+  (void)state;
+  for (int shape = SIM_CONTAINER_BOX; shape <= SIM_CONTAINER_GLASS; shape++) {
+    uint64_t alone = hash_in_walls(shape, 0, 0);
+    assert_true(hash_in_walls(shape, 6, 0) == alone);
+    // Rounded up or down, a wall that touches is still outside; one that comes in is not.
+    assert_true(hash_in_walls(shape, 6, 1e-6f) == alone);
+    assert_true(hash_in_walls(shape, 6, 0.01f) != alone);
+  }
+}
+
 static void stages_have_names(void **state) {
   (void)state;
   assert_string_equal(sim_stage_name(SIM_STAGE_predict), "predict");
@@ -523,6 +561,7 @@ int main(void) {
       cmocka_unit_test(nan_is_caught_and_named),
       cmocka_unit_test(explosion_is_caught_and_named),
       cmocka_unit_test(a_diverging_solver_is_caught),
+      cmocka_unit_test(bodies_around_the_container_change_nothing),
       cmocka_unit_test(stages_have_names),
       cmocka_unit_test(the_profile_counts),
   };
