@@ -62,7 +62,7 @@ static bool draw_world(RenderPicture *picture, RenderError *error) {
 // Output: colour and depth where a body is nearer.
 static bool draw_obstacles(RenderPicture *picture, RenderError *error) {
   const GpuDraw draw = {.target = &picture->background.target, .depth = GPU_DEPTH_WRITE, .in = sunlit_inputs(picture)};
-  return render_obstacles_draw(picture, false, draw, error);
+  return render_obstacles_draw(picture, RENDER_EYE, draw, error);
 }
 
 static bool draw_edges(RenderPicture *picture, const GpuTarget *out, bool front, RenderError *error) {

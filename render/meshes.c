@@ -139,6 +139,7 @@ static void take_corners(RenderMesh *mesh, const Faces *faces, float *corners) {
     corner_normal(faces, i / 3, vertex, out + 3);
     const double from_origin[3] = {(double)p[0], (double)p[1], (double)p[2]};
     reach2 = fmax(reach2, dot(from_origin, from_origin));
+    for (int k = 0; k < 3; ++k) mesh->half[k] = fmaxf(mesh->half[k], (float)fabs(from_origin[k]));
   }
   mesh->corner_count = 3 * faces->count;
   mesh->reach = (float)sqrt(reach2);

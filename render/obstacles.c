@@ -71,33 +71,43 @@ static bool size_body(Body *body, const SimObstacle *o) {
   return o->shape != SIM_STAIRS || (o->steps >= 1 && o->steps <= MAX_STEPS);
 }
 
-// The box around a ball that holds the body however it is turned.
-static void add_to_bounds(RenderObstacles *obstacles, const Body *body, float reach) {
+// How far a turned box reaches along the world's axis k: its half edges, each by the size of that part of its direction. The
+// direction of the box's own axis a is column a of the rotation's matrix.
+static float reach_along(const float q[4], const float half[3], int k) {
+  const float rows[3][3] = {
+      {1 - 2 * (q[1] * q[1] + q[2] * q[2]), 2 * (q[0] * q[1] - q[2] * q[3]), 2 * (q[0] * q[2] + q[1] * q[3])},
+      {2 * (q[0] * q[1] + q[2] * q[3]), 1 - 2 * (q[0] * q[0] + q[2] * q[2]), 2 * (q[1] * q[2] - q[0] * q[3])},
+      {2 * (q[0] * q[2] - q[1] * q[3]), 2 * (q[1] * q[2] + q[0] * q[3]), 1 - 2 * (q[0] * q[0] + q[1] * q[1])}};
+  return half[0] * fabsf(rows[k][0]) + half[1] * fabsf(rows[k][1]) + half[2] * fabsf(rows[k][2]);
+}
+
+static void add_to_bounds(RenderObstacles *obstacles, const Body *body, const float half[3]) {
   for (int k = 0; k < 3; ++k) {
+    const float reach = reach_along(body->rotation, half, k);
     obstacles->bounds_min[k] = fminf(obstacles->bounds_min[k], body->position[k] - reach);
     obstacles->bounds_max[k] = fmaxf(obstacles->bounds_max[k], body->position[k] + reach);
   }
 }
 
 // Add the obstacle to `bodies` if it can be drawn. false: GL or the machine is out of memory.
-static bool add_body(RenderObstacles *obstacles, Body *bodies, const SimObstacle *o, RenderError *error) {
+static bool add_body(RenderObstacles *obstacles, Body *bodies, const SimFrame *frame, int32_t i, RenderError *error) {
+  const SimObstacle *o = &frame->obstacles[i];
   Body *body = &bodies[obstacles->count];
   *body = (Body){0};
+  const float *half = body->half_size;
   if (!place_body(body, o)) return true;
-  float reach;
   if (o->shape == SIM_MESH) {
     int32_t mesh;
     if (!render_meshes_take(&obstacles->meshes, o->mesh, &mesh, error)) return false;
     if (mesh < 0) return true;
     obstacles->mesh_of_body[obstacles->count - obstacles->first[SIM_MESH]] = mesh;
-    reach = obstacles->meshes.meshes[mesh].reach;
-    body->half_size[0] = reach;
-  } else {
-    if (!size_body(body, o)) return true;
-    const float *half = body->half_size;
-    reach = sqrtf(half[0] * half[0] + half[1] * half[1] + half[2] * half[2]);
+    body->half_size[0] = obstacles->meshes.meshes[mesh].reach;
+    half = obstacles->meshes.meshes[mesh].half;
+  } else if (!size_body(body, o)) {
+    return true;
   }
-  add_to_bounds(obstacles, body, reach);
+  add_to_bounds(obstacles, body, half);
+  obstacles->obstacle_of_body[obstacles->count] = i;
   ++obstacles->count;
   return true;
 }
@@ -107,8 +117,7 @@ static bool add_bodies(RenderObstacles *obstacles, Body *bodies, const SimFrame 
   for (int shape = 0; shape < SIM_SHAPE_COUNT; ++shape) {
     obstacles->first[shape] = obstacles->count;
     for (int32_t i = 0; i < frame->obstacle_count; ++i) {
-      const SimObstacle *o = &frame->obstacles[i];
-      if ((int)o->shape == shape && !add_body(obstacles, bodies, o, error)) return false;
+      if ((int)frame->obstacles[i].shape == shape && !add_body(obstacles, bodies, frame, i, error)) return false;
     }
   }
   obstacles->first[SIM_SHAPE_COUNT] = obstacles->count;
@@ -130,8 +139,10 @@ bool render_obstacles_upload(RenderPicture *picture, RenderError *error) {
   const size_t most = (size_t)frame->obstacle_count;
   Body *bodies = malloc(sizeof *bodies * most);
   free(obstacles->mesh_of_body);
+  free(obstacles->obstacle_of_body);
   obstacles->mesh_of_body = malloc(sizeof *obstacles->mesh_of_body * most);
-  bool ok = bodies != NULL && obstacles->mesh_of_body != NULL;
+  obstacles->obstacle_of_body = malloc(sizeof *obstacles->obstacle_of_body * most);
+  bool ok = bodies != NULL && obstacles->mesh_of_body != NULL && obstacles->obstacle_of_body != NULL;
   if (!ok) gpu_fail(error, "out of memory for %d obstacles", frame->obstacle_count);
   ok = ok && add_bodies(obstacles, bodies, frame, error) &&
        gpu_buffer_write(&obstacles->bodies, "obstacles", bodies, sizeof *bodies * (size_t)obstacles->count, error);
@@ -141,30 +152,32 @@ bool render_obstacles_upload(RenderPicture *picture, RenderError *error) {
 
 void render_obstacles_destroy(RenderObstacles *obstacles) {
   for (int shape = 0; shape < SIM_SHAPE_COUNT; ++shape) {
-    gpu_program_destroy(&obstacles->program[0][shape]);
-    gpu_program_destroy(&obstacles->program[1][shape]);
+    for (int looker = 0; looker < 3; ++looker) gpu_program_destroy(&obstacles->program[looker][shape]);
   }
   gpu_buffer_destroy(&obstacles->bodies);
   render_meshes_destroy(&obstacles->meshes);
   free(obstacles->mesh_of_body);
+  free(obstacles->obstacle_of_body);
   *obstacles = (RenderObstacles){0};
 }
 
 // ---- Drawing ---------------------------------------------------------------------------------------------------------
 
-static bool prepare(RenderPicture *picture, bool from_sun, int shape, RenderError *error) {
+static bool prepare(RenderPicture *picture, RenderLooker looker, int shape, RenderError *error) {
+  static const char *const lookers[] = {"", " from the sun", " from the sun in the water"};
+  const char *const choices[] = {picture->defines, "#define SUN 1\n", "#define SUN 1\n#define IN_WATER 1\n"};
   char label[64], defines[sizeof picture->defines + 64];
-  snprintf(label, sizeof label, "%s%s", shape_names[shape], from_sun ? " from the sun" : "");
-  snprintf(defines, sizeof defines, "%s#define SHAPE %d\n", from_sun ? "#define SUN 1\n" : picture->defines, shape);
+  snprintf(label, sizeof label, "%s%s", shape_names[shape], lookers[looker]);
+  snprintf(defines, sizeof defines, "%s#define SHAPE %d\n", choices[looker], shape);
   const GpuProgramDesc desc = {
       .label = label, .file = shape == SIM_MESH ? "meshes.glsl" : "obstacles.glsl", .defines = defines};
-  return gpu_program_prepare(&picture->obstacles.program[from_sun][shape], &desc, error);
+  return gpu_program_prepare(&picture->obstacles.program[looker][shape], &desc, error);
 }
 
 // The closed mesh seen from within is not there, like every other body.
-static void draw_meshes(RenderPicture *picture, bool from_sun, GpuDraw draw) {
+static void draw_meshes(RenderPicture *picture, RenderLooker looker, GpuDraw draw) {
   const RenderObstacles *obstacles = &picture->obstacles;
-  draw.cull = from_sun ? GPU_CULL_NONE : GPU_CULL_BACK;
+  draw.cull = looker == RENDER_EYE ? GPU_CULL_BACK : GPU_CULL_NONE;
   for (int32_t body = obstacles->first[SIM_MESH]; body < obstacles->count; ++body) {
     const RenderMesh *mesh = &obstacles->meshes.meshes[obstacles->mesh_of_body[body - obstacles->first[SIM_MESH]]];
     const int32_t which[4] = {body};
@@ -176,21 +189,22 @@ static void draw_meshes(RenderPicture *picture, bool from_sun, GpuDraw draw) {
   }
 }
 
-bool render_obstacles_draw(RenderPicture *picture, bool from_sun, GpuDraw draw, RenderError *error) {
+bool render_obstacles_draw(RenderPicture *picture, RenderLooker looker, GpuDraw draw, RenderError *error) {
   const RenderObstacles *obstacles = &picture->obstacles;
   draw.in.storage[0] = &obstacles->bodies;
   for (int shape = 0; shape < SIM_SHAPE_COUNT && obstacles->count > 0; ++shape) {
     const int32_t first = obstacles->first[shape], count = obstacles->first[shape + 1] - first;
     if (count == 0) continue;
-    if (!prepare(picture, from_sun, shape, error)) return false;
-    draw.program = &obstacles->program[from_sun][shape];
+    if (!prepare(picture, looker, shape, error)) return false;
+    draw.program = &obstacles->program[looker][shape];
     if (shape == SIM_MESH) {
-      draw_meshes(picture, from_sun, draw);
+      draw_meshes(picture, looker, draw);
       continue;
     }
     draw.first_vertex = 36 * first;
     draw.vertices = 36 * count;
-    draw.cull = from_sun ? GPU_CULL_NONE : GPU_CULL_FRONT; // the far sides of the box are in view also from within it
+    // The far sides of the box are in view also from within it.
+    draw.cull = looker == RENDER_EYE ? GPU_CULL_FRONT : GPU_CULL_NONE;
     gpu_draw(picture->gpu, &draw);
   }
   return true;

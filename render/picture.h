@@ -23,7 +23,7 @@ typedef struct RenderFrameBlock {
   float sun_direction[4];   // unit, towards the sun; 1 when there is a sun, else 0
   float sun_colour[4];      // irradiance
   float sun_u[4], sun_v[4]; // dot(p, xyz) + w is the place in the sun map, [0, 1]
-  float sun_map[4];         // metres across the map in u and v; 1 − 1/n; –
+  float sun_map[4];         // metres across the map in u and v; 1 − 1/n; RENDER_SUN_IN_WATER: the water's level, m
   float absorption[4];      // 1/m; reflectance at normal incidence F0
   float scattering[4];      // 1/m
   float reflectance[4];     // of a metal at normal incidence; –
@@ -92,6 +92,7 @@ typedef struct RenderMesh {
   GpuBuffer corners;      // (corner_count, 6) float: position (m), unit normal; three corners for each triangle
   int32_t corner_count;   // 0 when nothing of it can be drawn
   float reach;            // m, of the farthest corner from the origin
+  float half[3];          // m, of the box around the origin that holds it, along its own axes
   bool shown;             // in the picture at hand
 } RenderMesh;
 
@@ -105,13 +106,21 @@ bool render_meshes_take(RenderMeshes *meshes, const SimMesh *mesh, int32_t *inde
 void render_meshes_forget(RenderMeshes *meshes);
 void render_meshes_destroy(RenderMeshes *meshes);
 
+/// Who sees the bodies of a picture.
+typedef enum RenderLooker {
+  RENDER_EYE = 0,
+  RENDER_SUN,         // in parallel projection: heights towards it
+  RENDER_SUN_IN_WATER // the same of what lies below the level of the Frame block's sun_map[3]
+} RenderLooker;
+
 /// Solid bodies on the GPU, sorted by shape.
 typedef struct RenderObstacles {
-  GpuProgram program[2][SIM_SHAPE_COUNT]; // from the eye, from the sun
+  GpuProgram program[3][SIM_SHAPE_COUNT]; // for each RenderLooker
   GpuBuffer bodies;                       // (count) struct Body of body.glsl
   int32_t count;
   int32_t first[SIM_SHAPE_COUNT + 1]; // the bodies of a shape: first[shape] … first[shape + 1] − 1
   int32_t *mesh_of_body;              // indices of meshes, from body first[SIM_MESH] on
+  int32_t *obstacle_of_body;          // (count) places in the frame's list
   RenderMeshes meshes;
   float bounds_min[3], bounds_max[3]; // m; min > max when there are none
 } RenderObstacles;
@@ -169,7 +178,7 @@ bool render_frame_block_write(RenderPicture *picture, const RenderView *view, Re
 bool render_obstacles_upload(RenderPicture *picture, RenderError *error);
 void render_obstacles_destroy(RenderObstacles *obstacles);
 /// Draw all bodies; `draw` has target, depth, blend and the inputs beyond the bodies.
-bool render_obstacles_draw(RenderPicture *picture, bool from_sun, GpuDraw draw, RenderError *error);
+bool render_obstacles_draw(RenderPicture *picture, RenderLooker looker, GpuDraw draw, RenderError *error);
 
 bool render_sun_map_create(RenderPicture *picture, RenderError *error);
 void render_sun_map_destroy(RenderPicture *picture);

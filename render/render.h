@@ -147,6 +147,41 @@ typedef struct RenderCartoon {
   RenderPalette palette;
 } RenderCartoon;
 
+/// From where the style "heightfield" draws what stands in the water into its map of refracted objects.
+typedef enum RenderVirtualEyes {
+  RENDER_EYES_EACH = 0,      ///< an eye for every ray, as plane water bends it (Figure 2, top): the default
+  RENDER_EYES_SCALED = 1,    ///< one for each object (Eqs. 2, 3), its picture scaled to the right length (Figure 3)
+  RENDER_EYES_ONE = 2        ///< one for each object, unscaled
+} RenderVirtualEyes;
+
+/// How the rays of the real surface are looked up in the maps of objects.
+typedef enum RenderMapAccess {
+  RENDER_ACCESS_POINT = 0,     ///< by the point in which they pass the object: the default
+  RENDER_ACCESS_DIRECTION = 1  ///< by their direction alone, as in the paper
+} RenderMapAccess;
+
+/// The style "heightfield" (Cords 2007); make it with render_default_settings. Lengths in spacings are those of the particles,
+/// 2 radii.
+typedef struct RenderHeightfield {
+  float smoothing;           ///< standard deviation of the filter of the heights, spacings, [0, 8], default 1
+  bool drops;                ///< particles that fly above the surface are drawn as balls, default true
+  // objects
+  bool mapped;               ///< objects are seen through maps of them (default); false: rays meet their geometry
+  RenderVirtualEyes eyes;
+  RenderMapAccess access;
+  float plane_reach;         ///< the surface as far around an object makes its plane, spacings, [1, 1000], default 12
+  float pull_reach;          ///< within this of an object the surface is pulled to that plane, spacings, [0, 1000], default 6
+  float group_distance;      ///< objects that are closer share a plane and an eye, spacings, [0, 1000], default 1
+  bool trapezium;            ///< the map of objects counts only between an object and the eye (Figure 8), default true
+  float trapezium_a;         ///< a: width of the trapezium behind the object, in the object's, [0.1, 100], default 3
+  float trapezium_b;         ///< b: its width at the eye, in the object's, [0.1, 100], default 3
+  // caustics
+  bool traced_caustics;      ///< light refracted by the surface onto floor and objects (section 2.4), default true
+  bool simple_caustics;      ///< Eq. 4, default false; both may be on
+  float simple_height, simple_slope, simple_base; ///< a, b and c of Eq. 4, [-100, 100], default 0.6, 2 and 0.6
+  float dispersion;          ///< the refractive index of blue light less that of red, [0, 0.5], default 0; water: 0.013
+} RenderHeightfield;
+
 /// A palette with a name, and how much a liquid of these colours mirrors and lets through.
 typedef struct RenderNamedPalette {
   const char *name;
@@ -190,6 +225,7 @@ typedef struct RenderSettings {
   RenderRefraction refraction;
   RenderRaycast raycast;
   RenderCartoon cartoon;
+  RenderHeightfield heightfield;
 
   // style "points"
   struct { float scale; } points; ///< sphere radius in particle radii, default 1.25, range [0.1, 5]

@@ -69,6 +69,19 @@ RenderSettings render_default_settings(void) {
                   .outline = 3,
                   .crease_angle = 40,
                   .palette = render_palette(0)->palette},
+      .heightfield = {.smoothing = 1,
+                      .drops = true,
+                      .mapped = true,
+                      .plane_reach = 12,
+                      .pull_reach = 6,
+                      .group_distance = 1,
+                      .trapezium = true,
+                      .trapezium_a = 3,
+                      .trapezium_b = 3,
+                      .traced_caustics = true,
+                      .simple_height = 0.6f,
+                      .simple_slope = 2,
+                      .simple_base = 0.6f},
       .points = {.scale = 1.25f},
   };
 }
@@ -149,6 +162,23 @@ static bool cartoon_check(const RenderCartoon *c, RenderError *error) {
   return palette_check(&c->palette, error);
 }
 
+static bool heightfield_check(const RenderHeightfield *h, RenderError *error) {
+  if (!in_range(h->smoothing, 0, 8)) return gpu_fail(error, "the smoothing of heights must be in [0, 8] spacings");
+  if ((unsigned)h->eyes > RENDER_EYES_ONE) return gpu_fail(error, "unknown virtual eyes %d", (int)h->eyes);
+  if ((unsigned)h->access > RENDER_ACCESS_DIRECTION) return gpu_fail(error, "unknown access %d", (int)h->access);
+  if (!in_range(h->plane_reach, 1, 1000)) return gpu_fail(error, "the reach of planes must be in [1, 1000] spacings");
+  if (!in_range(h->pull_reach, 0, 1000)) return gpu_fail(error, "the pull to planes must be in [0, 1000] spacings");
+  if (!in_range(h->group_distance, 0, 1000))
+    return gpu_fail(error, "the distance of groups must be in [0, 1000] spacings");
+  const float widths[] = {h->trapezium_a, h->trapezium_b};
+  if (!all_in_range(widths, 2, 0.1f, 100)) return gpu_fail(error, "a and b of the trapezium must be in [0.1, 100]");
+  const float simple[] = {h->simple_height, h->simple_slope, h->simple_base};
+  if (!all_in_range(simple, 3, -100, 100))
+    return gpu_fail(error, "a, b and c of simple caustics must be in [-100, 100]");
+  if (!in_range(h->dispersion, 0, 0.5f)) return gpu_fail(error, "the dispersion must be in [0, 0.5]");
+  return true;
+}
+
 bool render_settings_check(const RenderSettings *s, RenderError *error) {
   if (s->cookie != SETTINGS_COOKIE) return gpu_fail(error, "settings were not made by render_default_settings");
   if (!all_finite(s->sun_direction, 3) || is_zero(s->sun_direction)) {
@@ -173,7 +203,7 @@ bool render_settings_check(const RenderSettings *s, RenderError *error) {
   if (!in_range(s->exposure, 1e-6f, 1e6f)) return gpu_fail(error, "the exposure must be in [0.000001, 1000000]");
   if (!in_range(s->points.scale, 0.1f, 5)) return gpu_fail(error, "the scale of points must be in [0.1, 5]");
   return refraction_check(&s->refraction, error) && raycast_check(&s->raycast, error) &&
-         cartoon_check(&s->cartoon, error);
+         cartoon_check(&s->cartoon, error) && heightfield_check(&s->heightfield, error);
 }
 
 bool render_view_check(const RenderView *view, RenderError *error) {

@@ -4,6 +4,7 @@
 #include <string.h>
 
 extern const RenderStyle style_cartoon;
+extern const RenderStyle style_heightfield;
 extern const RenderStyle style_points;
 extern const RenderStyle style_raycast;
 extern const RenderStyle style_refraction;
@@ -13,6 +14,7 @@ const RenderStyle *const render_styles[] = {
     &style_refraction,
     &style_raycast,
     &style_cartoon,
+    &style_heightfield,
     NULL,
 };
 

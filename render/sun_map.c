@@ -89,7 +89,7 @@ static bool draw_solids(RenderPicture *picture, RenderError *error) {
   const float nothing[4] = {-1e9f, 0, 0, 0};
   gpu_clear_colour(out, 0, nothing);
   const GpuDraw draw = {.target = out, .blend = GPU_BLEND_MAX, .in.frame = &picture->uniforms};
-  return render_obstacles_draw(picture, true, draw, error);
+  return render_obstacles_draw(picture, RENDER_SUN, draw, error);
 }
 
 bool render_sun_map_draw(RenderPicture *picture, RenderError *error) {

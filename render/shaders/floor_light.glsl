@@ -33,7 +33,7 @@ vec3 floor_light(vec3 p, vec3 way, float across) {
   float shade = 1.0 + (hash(floor(at)) - 0.5) * 0.12 * flat_out;
   vec3 albedo = mix(vec3(0.58, 0.53, 0.45) * shade, vec3(0.25, 0.23, 0.20), in_grout);
   SunLight sunlit = sun_light(p);
-  vec3 sun = sun_colour.rgb * max(sun_direction.y, 0.0) / PI * sunlit.direct * sunlit.focus;
+  vec3 sun = sun_colour.rgb * max(sunlit.way.y, 0.0) / PI * sunlit.direct * sunlit.focus;
   vec3 light = albedo * (sun + sky_average(vec3(0.0, 1.0, 0.0)) * sunlit.diffuse);
   float reach = length(p.xz - eye.xz) / floor_plane.z;
   float grazing = 1.0 - 1.0 / slant;

@@ -6,7 +6,7 @@ layout(std140, binding = 0) uniform Frame {
   vec4 sun_direction;   // unit, towards the sun; 1 when there is a sun
   vec4 sun_colour;      // irradiance
   vec4 sun_u, sun_v;    // place in the sun map
-  vec4 sun_map;         // metres across the map; 1 - 1/n, the bending of light at the surface
+  vec4 sun_map;         // metres across the map; 1 - 1/n, the bending of light at the surface; the water's level, m
   vec4 absorption;      // 1/m; F0
   vec4 scattering;      // 1/m
   vec4 reflectance;     // of a metal

@@ -1,4 +1,5 @@
-// Bodies made of triangles: their corners are drawn as they are. SUN: heights as seen from the sun.
+// Bodies made of triangles: their corners are drawn as they are. SUN: heights as seen from the sun; IN_WATER: of what lies
+// below the level of the water. There the far side of a mesh that stands in the surface may be seen from within.
 #include "frame.glsl"
 #include "body.glsl"
 
@@ -12,6 +13,9 @@ layout(std430, binding = 1) readonly buffer Corners {
 };
 #ifdef SUN
 noperspective out float height;
+#ifdef IN_WATER
+noperspective out float over_level;
+#endif
 #else
 out vec3 normal;
 #endif
@@ -23,6 +27,9 @@ void main() {
 #ifdef SUN
   vec2 uv = vec2(dot(p, sun_u.xyz) + sun_u.w, dot(p, sun_v.xyz) + sun_v.w);
   height = dot(p, sun_direction.xyz);
+#ifdef IN_WATER
+  over_level = p.y - sun_map.w;
+#endif
   gl_Position = vec4(uv * 2.0 - 1.0, 0.0, 1.0);
 #else
   normal = rotate(body.rotation, vec3(corners[i + 3], corners[i + 4], corners[i + 5]));
@@ -36,8 +43,14 @@ layout(location = 0) out vec4 result;
 
 #ifdef SUN
 noperspective in float height;
+#ifdef IN_WATER
+noperspective in float over_level;
+#endif
 
 void main() {
+#ifdef IN_WATER
+  if (over_level > 0.0) discard;
+#endif
   result = vec4(height);
 }
 #else

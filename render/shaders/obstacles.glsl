@@ -1,5 +1,6 @@
 // Bodies of one SHAPE by ray casting: the box around each is drawn, and every pixel's ray is met with the shape inside.
-// SUN: heights as seen from the sun. A program for each shape: a software rasteriser runs both sides of a branch.
+// SUN: heights as seen from the sun; IN_WATER: of what lies below the level of the water. A program for each shape: a software
+// rasteriser runs both sides of a branch.
 #include "frame.glsl"
 #include "body.glsl"
 
@@ -60,9 +61,16 @@ noperspective in vec3 start;
 
 void main() {
   vec3 normal;
+#ifdef IN_WATER
+  float level = (sun_map.w - start.y) / sun_direction.y; // m towards the sun
+  vec2 t = meet_world(start + sun_direction.xyz * level, -sun_direction.xyz, 0.0, normal);
+  if (t.x > t.y || t.y < 0.0) discard;
+  result = vec4(level - max(t.x, 0.0));
+#else
   vec2 t = meet_world(start, -sun_direction.xyz, -FAR, normal);
   if (t.x > t.y) discard;
   result = vec4(-t.x);
+#endif
 }
 #else
 #include "solid_light.glsl"

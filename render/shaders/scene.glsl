@@ -1,6 +1,7 @@
 // What a ray in the air sees of the scene around the water: bodies, floor and sky where they are, met by geometry. Include
 // it after frame.glsl, with BODIES defined where there are any, the ends of each shape in `body_end`, and the picture of the
-// background with its depth in `background`.
+// background with its depth in `background`. MAPPED: bodies that belong to an object of the pool (pool.glsl) are left out; their
+// object is in `object_of_body`.
 #ifdef DRAWN
 #include "drawn.glsl"
 #endif
@@ -22,9 +23,16 @@ struct Meeting {
 };
 
 #ifdef BODIES
+#ifdef MAPPED
+#define LEFT_OUT(body) (object_of_body[body] >= 0)
+#else
+#define LEFT_OUT(body) false
+#endif
+
 // All bodies of one shape, which lie side by side.
 #define MEET_BODIES(begin, end, meet_shape) \
   for (int i = begin; i < end; ++i) { \
+    if (LEFT_OUT(i)) continue; \
     Body body = bodies[i]; \
     vec4 back = vec4(-body.rotation.xyz, body.rotation.w); \
     vec3 normal; \
@@ -35,7 +43,7 @@ struct Meeting {
   }
 #endif
 
-#if MESHES
+#if MESHES && defined(BODIES)
 // Triangles are not met by geometry: where a ray passes the ball around a mesh, it is followed through the picture of the
 // background, which shows the side of the mesh that the eye sees.
 void meet_mesh(vec3 origin, vec3 way, vec4 around, inout Meeting nearest) {
@@ -83,7 +91,7 @@ Meeting meet_scene(vec3 origin, vec3 way) {
 #endif
 #if MESHES
   for (int i = body_end[4]; i < body_end[5]; ++i) {
-    meet_mesh(origin, way, vec4(bodies[i].position.xyz, bodies[i].half_size.x), nearest);
+    if (!LEFT_OUT(i)) meet_mesh(origin, way, vec4(bodies[i].position.xyz, bodies[i].half_size.x), nearest);
   }
 #endif
 #endif

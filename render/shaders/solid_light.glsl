@@ -15,8 +15,8 @@ vec3 solid_light(vec3 p, vec3 normal) {
 }
 #else
 vec3 solid_light(vec3 p, vec3 normal) {
-  float facing = max(dot(normal, sun_direction.xyz), 0.0);
-  SunLight sunlit = sun_light(p, clear_of_solid(p, normal));
+  SunLight sunlit = sun_light_on(p, normal);
+  float facing = max(dot(normal, sunlit.way), 0.0);
   return sun_colour.rgb * facing / PI * sunlit.direct * sunlit.focus + sky_average(normal) * sunlit.diffuse;
 }
 #endif

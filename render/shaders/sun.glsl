@@ -1,4 +1,5 @@
-// How much sunlight reaches a point: shadows of obstacles, and what the water above it lets through.
+// How much sunlight reaches a point: shadows of obstacles, and what the water above it lets through. POOL: in the water of a
+// height field, what its surface refracts (pool_light.glsl).
 #ifdef WATER_SHADOW
 layout(binding = 5) uniform sampler2D sun_normal; // of the water's smooth surface
 layout(binding = 6) uniform sampler2D sun_water;  // thickness, height towards the sun, coverage, focus
@@ -11,24 +12,13 @@ vec2 sun_place(vec3 p) {
   return vec2(dot(p, sun_u.xyz) + sun_u.w, dot(p, sun_v.xyz) + sun_v.w);
 }
 
-// Percentage-closer filtering over 4·4 texels, with the fractional place as weights so that edges are smooth.
+#include "past_solids.glsl"
+
 float sun_past_solids(vec3 p) {
 #ifdef SOLID_SHADOW
   vec2 size = vec2(textureSize(sun_solid, 0));
-  vec2 at = sun_place(p) * size - 0.5;
-  vec2 f = fract(at);
-  vec2 base = (floor(at) + 0.5) / size;
   float bias = 1.5 * max(sun_map.x / size.x, sun_map.y / size.y);
-  float height = dot(p, sun_direction.xyz) + bias;
-  vec4 a = vec4(lessThan(textureGather(sun_solid, base + vec2(-0.5, -0.5) / size), vec4(height)));
-  vec4 b = vec4(lessThan(textureGather(sun_solid, base + vec2(1.5, -0.5) / size), vec4(height)));
-  vec4 c = vec4(lessThan(textureGather(sun_solid, base + vec2(-0.5, 1.5) / size), vec4(height)));
-  vec4 d = vec4(lessThan(textureGather(sun_solid, base + vec2(1.5, 1.5) / size), vec4(height)));
-  // Rows of texels from bottom to top; gather's order is (0,1) (1,1) (1,0) (0,0).
-  vec4 weight = vec4(1.0 - f.x, 1.0, 1.0, f.x);
-  float sum = (1.0 - f.y) * dot(vec4(a.wz, b.wz), weight) + dot(vec4(a.xy, b.xy), weight) +
-              dot(vec4(c.wz, d.wz), weight) + f.y * dot(vec4(c.xy, d.xy), weight);
-  return sum / 9.0;
+  return past_solids(sun_solid, sun_place(p), dot(p, sun_direction.xyz) + bias);
 #else
   return 1.0;
 #endif
@@ -46,6 +36,7 @@ vec3 clear_of_solid(vec3 p, vec3 normal) {
 }
 
 struct SunLight {
+  vec3 way;             // unit, towards where it comes from
   vec3 direct;          // share of the sunlight that reaches the point, without focus
   float focus;          // bundling of that light by the water's bumps
   vec3 diffuse;         // the same of the sky's light
@@ -55,8 +46,8 @@ struct SunLight {
 
 // Light at a point in, below or beside the water. Besides absorbing, water scatters: its shadow is darker than its tint.
 // Shadows of solids are looked up at `past_solids`.
-SunLight sun_light(vec3 p, vec3 past_solids) {
-  SunLight light = SunLight(vec3(1.0), 1.0, vec3(1.0), 0.0, -FAR);
+SunLight sun_light_by_particles(vec3 p, vec3 past_solids) {
+  SunLight light = SunLight(sun_direction.xyz, vec3(1.0), 1.0, vec3(1.0), 0.0, -FAR);
 #ifdef WATER_SHADOW
   vec4 water = textureLod(sun_water, sun_place(p), 0.0);
   if (water.z > 0.0 && water.x > 0.0) {
@@ -71,6 +62,21 @@ SunLight sun_light(vec3 p, vec3 past_solids) {
   return light;
 }
 
+#include "pool_light.glsl"
+
+// The same on a solid's surface with this outward normal, whose own slope casts no shadow on it.
+SunLight sun_light_on(vec3 p, vec3 normal) {
+  SunLight light = sun_light_by_particles(p, clear_of_solid(p, normal));
+#ifdef POOL
+  into_pool(p, normal, light);
+#endif
+  return light;
+}
+
 SunLight sun_light(vec3 p) {
-  return sun_light(p, p);
+  SunLight light = sun_light_by_particles(p, p);
+#ifdef POOL
+  into_pool(p, vec3(0.0), light);
+#endif
+  return light;
 }
