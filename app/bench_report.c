@@ -4,6 +4,7 @@
 // the density sweep: difference and squared distance of two positions, root, kernel and gradient, five sums; 32 operations
 // as wide/pbf.c writes them, so 16 multiply-adds if each were half of one. A pair of the correction: 28, so 14. Every
 // pair of a sweep also streams its index, 4 bytes, and every particle its own place in and out, 32 bytes.
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -42,6 +43,24 @@ static Limits limits_of(Bench *bench) {
 
 static double per(double sum, double count) {
   return count > 0 ? sum / count : 0;
+}
+
+/// Steps a second of simulation and surface together, as papers tell it.
+typedef struct Steps {
+  double as_run; ///< with the surface once a frame
+  double each;   ///< as if it were made after every substep
+} Steps;
+
+static Steps steps_of(Bench *bench) {
+  BenchRow *total = row_named(bench, "sim", "total");
+  double substeps = per((double)bench->substeps, bench->frames), surface = 0;
+  if (!total || !(substeps > 0)) return (Steps){0, 0};
+  for (int s = SIM_STAGE_frame; s < SIM_STAGE_COUNT; s++) {
+    BenchRow *row = row_named(bench, "sim", sim_stage_name((SimStage)s));
+    if (row) surface += bench_median(&row->milliseconds);
+  }
+  double all = bench_median(&total->milliseconds), alone = fmax(all - surface, 0) / substeps;
+  return (Steps){per(1e3 * substeps, all), per(1e3, alone + surface)};
 }
 
 // ---- Table -----------------------------------------------------------------------------------------------------------
@@ -95,6 +114,9 @@ void bench_print_table(Bench *bench, const SimCounts *counts) {
            bench->simulated_ms * 1e3 / (double)bench->particle_steps,
            per(bench->simulated_ms * 1e6, (double)bench->pairs), (double)bench->pairs / (double)bench->particle_steps,
            per((double)bench->world_bytes, counts->particles), per((double)sim_bytes_in_use(), counts->particles));
+  Steps steps = steps_of(bench);
+  printf("simulation and surface: %.0f substeps a second, %.0f if the surface were made after each\n", steps.as_run,
+         steps.each);
   print_scaling(bench);
   print_limits(bench);
 }
@@ -131,6 +153,9 @@ void bench_print_json(Bench *bench, const SimCounts *counts) {
   printf(" \"microseconds_per_particle_and_substep\": %.6f, \"neighbours_per_particle\": %.3f,\n",
          per(bench->simulated_ms * 1e3, (double)bench->particle_steps),
          per((double)bench->pairs, (double)bench->particle_steps));
+  Steps steps = steps_of(bench);
+  printf(" \"substeps_per_second\": %.3f, \"substeps_per_second_with_a_surface_each\": %.3f,\n", steps.as_run,
+         steps.each);
   printf(" \"rows\": [\n");
   for (int i = 0; i < bench->row_count; i++) print_json_row(&bench->rows[i], i + 1 == bench->row_count);
   printf(" ],\n \"scaling\": [");

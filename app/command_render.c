@@ -5,10 +5,12 @@
 
 #include "app/commands.h"
 #include "app/context.h"
+#include "app/hud.h"
 #include "app/progress.h"
 #include "app/record.h"
 #include "app/source.h"
 #include "app/stats.h"
+#include "app/style_grid.h"
 
 // Everything that a run holds, in the order in which it is made.
 typedef struct Job {
@@ -17,7 +19,9 @@ typedef struct Job {
   Source *source;
   Context *context;
   Render *render;
-  uint8_t *pixels; // a picture, (height, width, 3)
+  StyleGrid grid;  // one place, or one for each style of a list
+  uint8_t *pixels; // a picture, (grid.height, grid.width, 3)
+  uint8_t *cell;   // a place in it, (height, width, 3); NULL where there is only one
   float *values;   // a raw layer, (height, width, 3)
   Stats *stats;
   Record *record;
@@ -63,7 +67,9 @@ static bool check(Job *job, AppError *error) {
 
 static bool begin_drawing(Job *job, AppError *error) {
   const Options *options = job->options;
-  size_t size = (size_t)options->width * (size_t)options->height * 3;
+  job->grid = style_grid_make(options->style_count > 1 ? options->style_count : 1, options->width, options->height);
+  size_t size = (size_t)options->width * (size_t)options->height * 3,
+         places = (size_t)(job->grid.columns * job->grid.rows);
   job->context = context_create_headless(options->context, error);
   if (!job->context) return false;
   RenderError cause;
@@ -71,16 +77,18 @@ static bool begin_drawing(Job *job, AppError *error) {
   if (!job->render) return render_fail(error, &cause);
   if (options->layer)
     render_show_layer(job->render, options->layer); // whether the style has it is asked frame by frame
-  job->pixels = malloc(size);
+  job->pixels = calloc(places, size);
+  if (places > 1) job->cell = malloc(size);
   if (job->kind == RECORD_PFM) job->values = malloc(size * sizeof *job->values);
-  if (!job->pixels || (job->kind == RECORD_PFM && !job->values)) return app_fail(error, APP_FAILED, "out of memory");
+  if (!job->pixels || (places > 1 && !job->cell) || (job->kind == RECORD_PFM && !job->values))
+    return app_fail(error, APP_FAILED, "out of memory");
   return true;
 }
 
 static bool begin_recording(Job *job, AppError *error) {
   const Options *options = job->options;
-  RecordDef def = {options->output,           options->width,           options->height, options->fps,
-                   source_first(job->source), source_count(job->source)};
+  RecordDef def = {options->output, job->grid.width,           job->grid.height,
+                   options->fps,    source_first(job->source), source_count(job->source)};
   if (options->stats && !(job->stats = stats_open(options->stats, error))) return false;
   job->record = record_open(&def, error);
   return job->record != NULL;
@@ -88,22 +96,52 @@ static bool begin_recording(Job *job, AppError *error) {
 
 // ---- One frame -----------------------------------------------------------------------------------------------------------------
 
-static bool draw(Job *job, AppError *error) {
-  const RenderSettings *settings = source_settings(job->source);
+static bool draw_style(Job *job, const char *style, AppError *error) {
   const char *layer = job->options->layer;
-  job->frame = source_frame(job->source, render_style_needs(settings->style), error);
-  if (!job->frame) return false;
-  if (layer && !has_layer(settings->style, layer)) return no_layer(settings->style, layer, error);
+  if (layer && !has_layer(style, layer)) return no_layer(style, layer, error);
+  RenderSettings settings = *source_settings(job->source);
+  settings.style = style;
   RenderError cause;
-  return render_draw(job->render, job->frame, source_view(job->source), settings, &cause) || render_fail(error, &cause);
+  return render_draw(job->render, job->frame, source_view(job->source), &settings, &cause) ||
+         render_fail(error, &cause);
+}
+
+// The style's name in a corner of its picture.
+static void draw_name(Job *job, const char *style) {
+  char text[80];
+  int scale = hud_scale(1, job->options->width, job->options->height);
+  render_text(job->render, HUD_GLYPH_WIDTH * scale, HUD_LINE_HEIGHT * scale, scale,
+              hud_block(style, text, sizeof text));
+}
+
+// One frame serves all styles: it is simulated once, with whatever one of them needs.
+static bool draw_styles(Job *job, AppError *error) {
+  const Options *options = job->options;
+  unsigned needs = 0;
+  for (int i = 0; i < options->style_count; i++) needs |= render_style_needs(options->styles[i]);
+  job->frame = source_frame(job->source, needs, error);
+  if (!job->frame) return false;
+  for (int i = 0; i < options->style_count; i++) {
+    if (!draw_style(job, options->styles[i], error)) return false;
+    if (!options->no_names) draw_name(job, options->styles[i]);
+    render_read_rgb8(job->render, job->cell);
+    style_grid_put(&job->grid, i, job->cell, job->pixels);
+  }
+  return true;
+}
+
+static bool draw(Job *job, AppError *error) {
+  if (job->cell) return draw_styles(job, error);
+  const char *style = source_settings(job->source)->style;
+  job->frame = source_frame(job->source, render_style_needs(style), error);
+  if (!job->frame || !draw_style(job, style, error)) return false;
+  if (job->kind != RECORD_PFM) render_read_rgb8(job->render, job->pixels);
+  return true;
 }
 
 static bool record(Job *job, AppError *error) {
   int64_t number = source_number(job->source);
-  if (job->kind != RECORD_PFM) {
-    render_read_rgb8(job->render, job->pixels);
-    return record_picture(job->record, number, job->pixels, error);
-  }
+  if (job->kind != RECORD_PFM) return record_picture(job->record, number, job->pixels, error);
   int32_t channels;
   if (!render_read_layer(job->render, job->values, &channels))
     return app_fail(error, APP_FAILED, "--layer %s: its values cannot be read", job->options->layer);
@@ -139,6 +177,7 @@ static void end(Job *job) {
   record_abort(job->record);
   stats_abort(job->stats);
   free(job->values);
+  free(job->cell);
   free(job->pixels);
   render_destroy(job->render);
   context_destroy(job->context);

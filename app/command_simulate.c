@@ -63,6 +63,9 @@ bool command_simulate(const Options *options, AppError *error) {
   if (fine && !pattern->numbered && source_count(source) > 1)
     fine = app_fail(error, APP_BAD_INPUT, "-o: '%s': the name needs a number (%%05d) where there are several frames",
                     options->output);
+  if (fine && scene_ripple(source_scene(source)))
+    fine = app_fail(error, APP_BAD_INPUT, "%s: its water is a ripple and has no particles to write; lido render draws it",
+                    options->source);
   fine = fine && probe(source, pattern, error);
   if (fine && options->stats) fine = (stats = stats_open(options->stats, error)) != NULL;
   if (fine) {

@@ -175,6 +175,17 @@ int32_t grab_pick(const GrabBodies *bodies, const float origin[3], const float d
   return nearest >= 0 && bodies->defs[nearest].motion == SIM_DRAGGABLE ? nearest : -1;
 }
 
+bool grab_meets_glass(const SimContainer *container, const float origin[3], const float direction[3]) {
+  SimObstacle glass = {.shape = SIM_CYLINDER, .rotation = {0, 0, 0, 1}};
+  for (int k = 0; k < 3; k++) {
+    glass.position[k] = 0.5f * (container->min[k] + container->max[k]);
+    glass.size[k] = container->max[k] - container->min[k];
+  }
+  glass.size[0] = fminf(glass.size[0], glass.size[2]);
+  float distance;
+  return container->shape == SIM_CONTAINER_GLASS && grab_ray_meets(&glass, origin, direction, &distance) && distance > 0;
+}
+
 // ---- The hand -----------------------------------------------------------------------------------------------------------
 
 bool grab_begin(Grab *grab, const GrabBodies *bodies, const RenderView *view, float x, float y, int width, int height) {

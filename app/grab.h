@@ -23,6 +23,9 @@ typedef struct GrabBodies {
 /// The draggable body that the ray meets first; −1 when it meets none, or another body before.
 int32_t grab_pick(const GrabBodies *bodies, const float origin[3], const float direction[3]);
 
+/// Whether the ray meets a glass from outside. A tank is none.
+bool grab_meets_glass(const SimContainer *container, const float origin[3], const float direction[3]);
+
 typedef struct Grab {
   bool holds;      ///< a body is in the hand
   bool moved;      ///< `target` has not been taken yet

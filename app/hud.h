@@ -29,6 +29,8 @@
 /// What is not a key press: X(name, what it does).
 #define WINDOW_GESTURES(X) \
   X("Left drag",    "look around; on a draggable body: move it") \
+  X("... on a glass", "lean it; with Alt: look around") \
+  X("Alt + left",   "lean the tank, also with Ctrl + right") \
   X("Middle drag",  "move the view, also with Shift + left") \
   X("Wheel",        "nearer, further") \
   X("Right drag",   "push the water, also with Ctrl + left") \
@@ -68,7 +70,7 @@ char *hud_block(const char *text, char *block, size_t size);
 enum { HUD_GLYPH_WIDTH = 6, HUD_LINE_HEIGHT = 11 };
 
 /// What a window should have room for: the longest line of the help with its margins; figures, help and a notice.
-enum { HUD_COLUMNS = 62, HUD_LINES = 24 };
+enum { HUD_COLUMNS = 62, HUD_LINES = 26 };
 
 /// The scale of all text in a window of width × height pixels: twice the monitor's, less where the above would not fit,
 /// at least 1.

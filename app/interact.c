@@ -91,6 +91,27 @@ int interact_take(Interact *hand, const InteractStrength *strength, const Render
   return count;
 }
 
+void interact_lean_goal(const SimContainer *container, const float keys[2], const float dragged[2], int height,
+                        float goal[2]) {
+  float most = container->shape == SIM_CONTAINER_GLASS ? INTERACT_MAX_GLASS_LEAN : INTERACT_MAX_LEAN;
+  double turn = 0.5 * 3.14159265358979323846 / (height > 0 ? height : 1);
+  for (int k = 0; k < 2; k++) goal[k] = (float)(keys[k] * INTERACT_MAX_LEAN + turn * dragged[k]);
+  float length = hypotf(goal[0], goal[1]);
+  for (int k = 0; k < 2 && length > most; k++) goal[k] *= most / length;
+}
+
+bool interact_lean_step(InteractLean *lean, const float goal[2], double seconds) {
+  float share = (float)(1 - exp(-seconds / 0.12));
+  bool leaned = lean->leans;
+  lean->leans = false;
+  for (int k = 0; k < 2; k++) {
+    lean->angle[k] += share * (goal[k] - lean->angle[k]);
+    if (goal[k] == 0 && fabsf(lean->angle[k]) < 1e-3f) lean->angle[k] = 0;
+    if (lean->angle[k] != 0) lean->leans = true;
+  }
+  return leaned || lean->leans;
+}
+
 void interact_lean(const float gravity[3], const RenderView *view, float right, float away, float leaned[3]) {
   float axes[3][3];
   camera_axes(view, axes[0], axes[1], axes[2]);

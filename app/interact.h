@@ -44,8 +44,24 @@ void interact_end(Interact *hand); ///< what it has done until now is still take
 int interact_take(Interact *hand, const InteractStrength *strength, const RenderView *view, int width, int height,
                   double seconds, SimPush pushes[INTERACT_MAX_PUSHES]);
 
-/// Most that the tank leans when an arrow key is held, radians (20°).
+/// Most that a tank leans, and a glass, radians (20° and 40°). An arrow key leans either as far as a tank.
 #define INTERACT_MAX_LEAN 0.34906585f
+#define INTERACT_MAX_GLASS_LEAN 0.69813170f
+
+/// How the tank leans, and how it gets there.
+typedef struct InteractLean {
+  float angle[2]; ///< radians, to the right and away from the eye
+  bool leans;     ///< it does not stand upright
+} InteractLean;
+
+/// Where keys (−1, 0 or 1 to the right and away) and a hand that has dragged it so far (pixels to the right and upwards)
+/// want it: a right angle for a drag across the height of the picture, but never more than its most. Both add up.
+void interact_lean_goal(const SimContainer *container, const float keys[2], const float dragged[2], int height,
+                        float goal[2]);
+
+/// Go there for `seconds`: evenly, nearly all of the way in a third of a second, and back in the same way. True as long as
+/// it leans and once more when it stands upright again: then gravity is to be set.
+bool interact_lean_step(InteractLean *lean, const float goal[2], double seconds);
 
 /// Gravity in a tank that leans, as seen by `view`: to the right by `right` radians and away from the eye by `away`,
 /// so that water runs to that side of the picture. Its strength stays; without gravity there is nothing to lean.

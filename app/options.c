@@ -10,6 +10,7 @@
 
 #include "app/commands.h"
 #include "app/scene_table.h"
+#include "app/style_grid.h"
 
 // ---- Readers of values: each fills its part of the options, false and *cause when it cannot -------------------------
 
@@ -38,22 +39,39 @@ static bool read_output(Options *options, const char *value, char *cause, size_t
   return *value || because(cause, size, "must not be empty");
 }
 
+// "A,B,C": each value by `read`, which says where it ends, NULL: it is wrong.
+static int read_list(const char *value, void *options,
+                     const char *(*read)(void *options, int index, const char *text)) {
+  for (int count = 0; count < OPTIONS_MOST;) {
+    value = read(options, count++, value);
+    if (!value || !*value) return value ? count : 0;
+    if (*value++ != ',') return 0;
+  }
+  return 0;
+}
+
+static const char *one_style(void *options, int index, const char *text) {
+  size_t length = strcspn(text, ",");
+  for (int32_t i = 0; i < render_style_count(); i++) {
+    const char *name = render_style_name(i);
+    if (strlen(name) != length || strncmp(name, text, length) != 0) continue;
+    ((Options *)options)->styles[index] = name;
+    return text + length;
+  }
+  return NULL;
+}
+
 static bool read_style(Options *options, const char *value, char *cause, size_t size) {
   static const SceneField field = {.type = SCENE_STYLE};
-  options->style = value;
-  if (render_style_exists(value)) return true;
+  options->style_count = read_list(value, options, one_style);
+  options->style = options->style_count > 0 ? options->styles[0] : NULL;
+  if (options->style) return true;
   SceneChoices choices;
   char list[200];
   scene_choices(&field, &choices);
   scene_choices_list(&choices, list, sizeof list);
-  bool later = false;
-  for (int i = choices.count; i < choices.with_later; i++) later = later || strcmp(value, choices.names[i]) == 0;
-  char printable[80];
-  text_printable(printable, sizeof printable, value, 40);
-  if (later)
-    snprintf(cause, size, "\"%s\" is not available in this version; available: %s", printable, list);
-  else
-    snprintf(cause, size, "must be one of %s, got \"%s\"", list, printable);
+  snprintf(cause, size, "must be one of %s%s", list,
+           strchr(value, ',') ? ", or up to 8 of them with commas between" : "");
   return false;
 }
 
@@ -65,17 +83,6 @@ static bool read_size(Options *options, const char *value, char *cause, size_t s
   options->width = (int)width;
   options->height = (int)height;
   return true;
-}
-
-// "A,B,C": each value by `read`, which says where it ends, NULL: it is wrong.
-static int read_list(const char *value, void *options,
-                     const char *(*read)(void *options, int index, const char *text)) {
-  for (int count = 0; count < OPTIONS_MOST;) {
-    value = read(options, count++, value);
-    if (!value || !*value) return value ? count : 0;
-    if (*value++ != ',') return 0;
-  }
-  return 0;
 }
 
 static const char *one_size(void *options, int index, const char *text) {
@@ -208,6 +215,7 @@ static bool read_layer(Options *options, const char *value, char *cause, size_t 
     options->name = true;                                                                                              \
     return true;                                                                                                       \
   }
+SWITCH_READER(no_names)
 SWITCH_READER(quiet)
 SWITCH_READER(json)
 SWITCH_READER(schema)
@@ -241,7 +249,8 @@ typedef struct Option {
 // clang-format off
 static const Option option_table[] = {
   {"output",    'o', "PATTERN",     RENDER | SIMULATE, read_output,    "where the frames go, like out/f_%05d.png"},
-  {"style",     0,   "NAME",        DRAWS | CHECK,     read_style,     "how the water is drawn (see lido list)"},
+  {"style",     0,   "NAME,...",    DRAWS | CHECK,     read_style,     "how the water is drawn (see lido list)"},
+  {"no-names",  0,   NULL,          RENDER,            read_no_names,  "several styles side by side without their names"},
   {"size",      0,   "WxH",         DRAWS,             read_size,      "pixels of a picture, default 1280x720"},
   {"sizes",     0,   "WxH,...",     BENCH,             read_sizes,     "a table: time of a picture, for each size …"},
   {"particles", 0,   "N,...",       BENCH,             read_particles, "… and each number of particles (about)"},
@@ -391,6 +400,20 @@ static bool find_command(Parser *parser) {
   return refuse(parser, "%s: unknown command (see lido --help)", words[0], "");
 }
 
+/// Several styles are drawn side by side by lido render, as pictures.
+static bool check_styles(const Parser *parser) {
+  const Options *options = parser->options;
+  const char *name = command_table[options->command].name;
+  if (options->style_count < 2)
+    return !options->no_names || refuse(parser, "--no-names: only several styles side by side have names", "", "");
+  if (options->command != COMMAND_render) return refuse(parser, "--style: lido %s takes one style only", name, "");
+  if (options->layer || options->stats)
+    return refuse(parser, "--%s: not together with several styles", options->layer ? "layer" : "stats", "");
+  StyleGrid grid = style_grid_make(options->style_count, options->width, options->height);
+  return (grid.width <= 16384 && grid.height <= 16384) ||
+         refuse(parser, "--size: that many pictures side by side must not be larger than 16384x16384", "", "");
+}
+
 /// What cannot be asked for together with --vary.
 static bool check_vary(const Parser *parser) {
   const Options *options = parser->options;
@@ -434,7 +457,7 @@ static bool check_against_command(Parser *parser) {
   if (!options->output && bit & (RENDER | SIMULATE))
     return refuse(parser, "lido %s: needs -o PATTERN, like -o %s", name,
                   options->command == COMMAND_render ? "out/f_%05d.png" : "out/p_%05d.vtk");
-  return check_vary(parser);
+  return check_styles(parser) && check_vary(parser);
 }
 
 /// --style and --seed change the scene like a --set, and win over one.
@@ -480,9 +503,12 @@ static void print_option(FILE *file, const Option *option) {
 
 static void print_notes(FILE *file, int command) {
   if (command == COMMAND_render)
-    fprintf(file, "\nSOURCE is a scene, or particle files such as 'run/p_%%05d.vtk' (.vtk or .ply).\n"
-                  "PATTERN is 'out/f_%%05d.png' for pictures, 'film.mp4' for a film (needs ffmpeg),\n"
-                  "or '-' for raw RGB24 frames on the standard output.\n");
+    fprintf(file,
+            "\nSOURCE is a scene, or particle files such as 'run/p_%%05d.vtk' (.vtk or .ply).\n"
+            "PATTERN is 'out/f_%%05d.png' for pictures, 'film.mp4' for a film (needs ffmpeg),\n"
+            "or '-' for raw RGB24 frames on the standard output.\n"
+            "Several styles, like --style refraction,cartoon, are laid side by side in one picture, each as large\n"
+            "as --size says.\n");
   if (command == COMMAND_simulate) fprintf(file, "\nPATTERN is 'out/p_%%05d.vtk' or 'out/p_%%05d.ply'.\n");
   if (command == COMMAND_bench)
     fprintf(file,

@@ -19,7 +19,10 @@ typedef struct Options {
   const char **sources;        ///< (source_count) `source` first; more than one only with --vary
   int source_count;
   const char *output;          ///< -o: pattern, film or "-"
-  const char *style;           ///< --style, or NULL: the scene's
+  const char *style;           ///< --style, the first of several, or NULL: the scene's
+  const char *styles[OPTIONS_MOST]; ///< (style_count) --style: more than one only for lido render
+  int style_count;
+  bool no_names;               ///< --no-names: several styles side by side without their names
   int width, height;           ///< --size, default 1280x720
   int sizes[OPTIONS_MOST][2];  ///< (size_count) --sizes
   int size_count;

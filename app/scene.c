@@ -198,6 +198,26 @@ static RenderCartoon cartoon_settings(const SceneCartoon *scene) {
                          .palette = palette_settings(scene)};
 }
 
+static RenderHeightfield heightfield_settings(const SceneHeightfield *scene) {
+  return (RenderHeightfield){.smoothing = scene->smoothing,
+                             .drops = scene->drops,
+                             .mapped = scene->mapped,
+                             .eyes = (RenderVirtualEyes)scene->eyes,
+                             .access = (RenderMapAccess)scene->access,
+                             .plane_reach = scene->plane_reach,
+                             .pull_reach = scene->pull_reach,
+                             .group_distance = scene->group_distance,
+                             .trapezium = scene->trapezium,
+                             .trapezium_a = scene->trapezium_a,
+                             .trapezium_b = scene->trapezium_b,
+                             .traced_caustics = scene->traced_caustics,
+                             .simple_caustics = scene->simple_caustics,
+                             .simple_height = scene->simple_height,
+                             .simple_slope = scene->simple_slope,
+                             .simple_base = scene->simple_base,
+                             .dispersion = scene->dispersion};
+}
+
 RenderSettings scene_render_settings(const Scene *scene) {
   const SceneEnvironment *environment = &scene->environment;
   RenderSettings settings = render_default_settings();
@@ -224,6 +244,7 @@ RenderSettings scene_render_settings(const Scene *scene) {
   settings.points.scale = scene->render.points.scale;
   settings.raycast = raycast_settings(&scene->render.raycast);
   settings.cartoon = cartoon_settings(&scene->render.cartoon);
+  settings.heightfield = heightfield_settings(&scene->render.heightfield);
   settings.refraction = refraction_settings(&scene->render.refraction);
   return settings;
 }

@@ -66,7 +66,7 @@ SCENE_STRUCTS(SCENE_STRUCT)
 // What the numbers of choices mean: places in the range of the table.
 typedef enum SceneSolver { SOLVER_PBF, SOLVER_SPH } SceneSolver;
 typedef enum SceneContainerShape { CONTAINER_BOX, CONTAINER_GLASS } SceneContainerShape;
-typedef enum SceneFluidType { FLUID_BLOCK, FLUID_DROP, FLUID_EMITTER } SceneFluidType;
+typedef enum SceneFluidType { FLUID_BLOCK, FLUID_DROP, FLUID_EMITTER, FLUID_RIPPLE } SceneFluidType;
 typedef enum SceneEmitterShape { EMITTER_DISC, EMITTER_RECTANGLE } SceneEmitterShape;
 typedef enum SceneObstacleType {
   OBSTACLE_BOX,
@@ -94,6 +94,7 @@ typedef struct SceneDefs {
   SimDropDef *drops;         ///< (drop_count)
   SimEmitterDef *emitters;   ///< (emitter_count)
   SimSinkDef *sinks;         ///< (sinks_count)
+  SimWaveDef *waves;         ///< (waves_count of the ripple), NULL: there is no ripple
   SimObstacleDef *obstacles; ///< (obstacles_count)
   SimPoseKey **keys;         ///< (obstacles_count), each (keys_count) of its obstacle
   SimMesh *meshes;           ///< (obstacles_count), empty where the obstacle is none
@@ -145,6 +146,9 @@ int64_t scene_particle_count(const Scene *scene);
 
 /// Which of the world's emitters the fluid item `fluid` is; −1: it is none.
 int32_t scene_emitter_index(const Scene *scene, int32_t fluid);
+
+/// The ripple that is the scene's water; NULL: the water is made of particles.
+const SceneRipple *scene_ripple(const Scene *scene);
 
 /// Unit quaternion (x, y, z, w) of a turn about x, then y, then z, in degrees.
 void scene_quaternion(const float degrees[3], float quaternion[4]);

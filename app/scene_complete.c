@@ -128,6 +128,52 @@ static bool check_emitter(const Check *check, const char *keys, const SceneEmitt
   return true;
 }
 
+static bool check_waves(const Check *check, const char *keys, const SceneRipple *ripple) {
+  char place[96];
+  float spacing = 2 * check->scene->simulation.particle_radius;
+  for (int i = 0; i < ripple->waves_count; i++) {
+    const SceneWave *wave = &ripple->waves[i];
+    snprintf(place, sizeof place, "%.40s.waves.%d.wavelength", keys, i);
+    if (wave->wavelength < spacing)
+      return fail_at(check, place, "must be at least 2 x particle_radius = %g m, got %g", (double)spacing,
+                     (double)wave->wavelength);
+    snprintf(place, sizeof place, "%.40s.waves.%d.direction", keys, i);
+    if (!(hypotf(wave->direction[0], wave->direction[2]) > 1e-10f))
+      return fail_at(check, place, "must not point straight up or down");
+  }
+  return true;
+}
+
+/// Without particles there is nothing for the rest of a scene's water to do.
+static bool check_alone(const Check *check, const char *keys) {
+  const Scene *scene = check->scene;
+  char place[40];
+  if (scene->fluid_count > 1) return fail_at(check, keys, "a ripple must be the only water of a scene");
+  if (scene->sinks_count > 0) return fail_at(check, "sinks.0", "a ripple has no particles that it could swallow");
+  for (int i = 0; i < scene->obstacles_count; i++) {
+    snprintf(place, sizeof place, "obstacles.%d.motion", i);
+    if (scene->obstacles[i].motion == MOTION_FLOATING)
+      return fail_at(check, place, "nothing floats on a ripple: it has no particles to carry it");
+  }
+  for (int i = 0; i < scene->events_count; i++) {
+    snprintf(place, sizeof place, "events.%d", i);
+    if (scene->events[i].type == EVENT_POUR) return fail_at(check, place, "no water can be poured into a ripple");
+  }
+  return true;
+}
+
+static bool check_ripple(const Check *check, const char *keys, const SceneRipple *ripple) {
+  const SceneContainer *container = &check->scene->container;
+  double reach = 0, level = (double)ripple->level;
+  if (!check_alone(check, keys) || !check_waves(check, keys, ripple)) return false;
+  if (!(check->scene->simulation.gravity[1] < 0))
+    return fail_at(check, "simulation.gravity", "must point downwards for a ripple");
+  for (int i = 0; i < ripple->waves_count; i++) reach += (double)ripple->waves[i].amplitude;
+  if (level - reach > (double)container->min[1] && level + reach < (double)container->max[1]) return true;
+  return fail_at(check, keys, "its waves reach from %g to %g m, which must lie in the container, between %g and %g m",
+                 level - reach, level + reach, (double)container->min[1], (double)container->max[1]);
+}
+
 static bool check_item(const Check *check, const char *keys, const SceneFluid *fluid) {
   switch ((SceneFluidType)fluid->type) {
   case FLUID_BLOCK:
@@ -136,6 +182,8 @@ static bool check_item(const Check *check, const char *keys, const SceneFluid *f
     return check_drop(check, keys, &fluid->drop);
   case FLUID_EMITTER:
     return check_emitter(check, keys, &fluid->emitter);
+  case FLUID_RIPPLE:
+    return check_ripple(check, keys, &fluid->ripple);
   }
   return false;
 }

@@ -127,6 +127,25 @@ static SimEmitterDef make_emitter(const SceneEmitter *emitter) {
   return def;
 }
 
+const SceneRipple *scene_ripple(const Scene *scene) {
+  return scene->fluid_count == 1 && scene->fluid[0].type == FLUID_RIPPLE ? &scene->fluid[0].ripple : NULL;
+}
+
+static bool make_waves(Scene *scene) {
+  const SceneRipple *ripple = scene_ripple(scene);
+  if (!ripple) return true;
+  SimWaveDef *waves = scene->defs.waves = calloc((size_t)ripple->waves_count + 1, sizeof *waves);
+  for (int i = 0; waves && i < ripple->waves_count; i++) {
+    const SceneWave *wave = &ripple->waves[i];
+    waves[i] = (SimWaveDef){.amplitude = wave->amplitude,
+                            .wavelength = wave->wavelength,
+                            .direction = {wave->direction[0], wave->direction[2]},
+                            .phase = (float)((double)wave->phase * PI / 180),
+                            .standing = wave->standing};
+  }
+  return waves != NULL;
+}
+
 static bool make_water(Scene *scene) {
   SceneDefs *defs = &scene->defs;
   size_t room = (size_t)scene->fluid_count + 1;
@@ -145,7 +164,7 @@ static bool make_water(Scene *scene) {
     copy3(defs->sinks[i].min, scene->sinks[i].min);
     copy3(defs->sinks[i].max, scene->sinks[i].max);
   }
-  return true;
+  return make_waves(scene);
 }
 
 int32_t scene_emitter_index(const Scene *scene, int32_t fluid) {
@@ -262,6 +281,7 @@ void scene_defs_free(Scene *scene) {
   free(defs->drops);
   free(defs->emitters);
   free(defs->sinks);
+  free(defs->waves);
   free(defs->obstacles);
   free(defs->keys);
   free(defs->meshes);
@@ -300,6 +320,13 @@ SimWorldDef scene_world_def(const Scene *scene) {
   def.emitters = defs->emitters;
   def.sink_count = scene->sinks_count;
   def.sinks = defs->sinks;
+  const SceneRipple *ripple = scene_ripple(scene);
+  if (ripple) {
+    def.ripple = true;
+    def.ripple_level = ripple->level;
+    def.wave_count = ripple->waves_count;
+    def.waves = defs->waves;
+  }
   def.max_particles = simulation->max_particles;
   def.reuse = simulation->reuse;
   def.colour_diffusion = simulation->colour_diffusion;

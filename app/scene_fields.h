@@ -102,12 +102,14 @@
     "Whether its edges are drawn.")
 
 #define SCENE_FLUID(F, O, L, V, S) \
-  F(S, CHOICE,    type,            "",         "block | drop | emitter", "\"block\"", \
+  F(S, CHOICE,    type,            "",         "block | drop | emitter | ripple", "\"block\"", \
     "What kind of water this is.") \
   V(S, BLOCK,     block,           SceneBlock,   "A box filled with particles.") \
   V(S, DROP,      drop,            SceneDrop,    "A ball filled with particles.") \
   V(S, EMITTER,   emitter,         SceneEmitter, \
-    "A spout: layers of particles leave its opening, as many as its size and speed make; none where it is blocked.")
+    "A spout: layers of particles leave its opening, as many as its size and speed make; none where it is blocked.") \
+  V(S, RIPPLE,    ripple,          SceneRipple, \
+    "Water without particles, from wall to wall: its surface is a sum of waves. It stands alone; style heightfield shows it.")
 
 #define SCENE_BLOCK(F, O, L, V, S) \
   F(S, VECTOR,    min,             "m",        "[-1000, 1000]",    SCENE_REQUIRED, \
@@ -154,6 +156,23 @@
     "Colour of the water; all 0: the natural one.") \
   F(S, REFERENCE, obstacle,        "",         "obstacles",        "null", \
     "The obstacle that carries it; null: it stands still.")
+
+#define SCENE_RIPPLE(F, O, L, V, S) \
+  F(S, NUMBER,    level,           "m",        "[-1000, 1000]",    SCENE_REQUIRED, \
+    "Height (y) of the water at rest; waves may reach neither the floor nor the container's upper end.") \
+  L(S, SceneWave, waves,     64,    "What the surface is the sum of: small waves, as fast as gravity makes them on water of this depth.")
+
+#define SCENE_WAVE(F, O, L, V, S) \
+  F(S, NUMBER,    amplitude,       "m",        "[0, 1000]",        SCENE_REQUIRED, \
+    "Half the height from trough to crest.") \
+  F(S, NUMBER,    wavelength,      "m",        "(0, 1000000]",     SCENE_REQUIRED, \
+    "From crest to crest; at least twice the particle_radius.") \
+  F(S, DIRECTION, direction,       "",         "[-1000, 1000]",    "[1, 0, 0]", \
+    "Where it goes to, level; any length.") \
+  F(S, NUMBER,    phase,           "degrees",  "[-360, 360]",      "0", \
+    "Of its cosine, at the origin when the scene starts.") \
+  F(S, SWITCH,    standing,        "",         "",                 "false", \
+    "It swings where it is instead of travelling.")
 
 #define SCENE_SINK(F, O, L, V, S) \
   F(S, VECTOR,    min,             "m",        "[-1000, 1000]",    SCENE_REQUIRED, \
@@ -294,6 +313,7 @@
   O(S, SceneRefraction, refraction, "The style refraction (Imai, Kanamori, Mitani 2016).") \
   O(S, SceneRaycast, raycast,      "The style raycast (Xiao, Zhang, Yang 2017).") \
   O(S, SceneCartoon, cartoon,      "The style cartoon (Rocha Neto, Guimarães, Apolinário, Mello 2014).") \
+  O(S, SceneHeightfield, heightfield, "The style heightfield (Cords 2007).") \
   O(S, ScenePoints, points,        "The style points.")
 
 #define SCENE_REFRACTION(F, O, L, V, S) \
@@ -424,6 +444,42 @@
   F(S, OPTIONAL_VECTOR, grout,     "linear",   "[0, 1]",           "null", \
     "Colour of the lines between them.")
 
+#define SCENE_HEIGHTFIELD(F, O, L, V, S) \
+  F(S, NUMBER,    smoothing,       "spacings", "[0, 8]",           "1", \
+    "Standard deviation of the filter of the heights; 0: none.") \
+  F(S, SWITCH,    drops,           "",         "",                 "true", \
+    "Particles that fly above the surface are drawn as balls.") \
+  F(S, SWITCH,    mapped,          "",         "",                 "true", \
+    "What stands in the water is seen through maps of it; off: rays meet its geometry.") \
+  F(S, CHOICE,    eyes,            "",         "each | scaled | one", "\"each\"", \
+    "Virtual eyes of these maps: each, one for every ray; scaled, one an object (Eqs. 2, 3), scaled (Fig. 3); one, unscaled.") \
+  F(S, CHOICE,    access,          "",         "point | direction", "\"point\"", \
+    "How rays look them up: by the point where they pass the object, or by direction alone, as in the paper.") \
+  F(S, NUMBER,    plane_reach,     "spacings", "[1, 1000]",        "12", \
+    "The plane of an object is that of the surface as far around it.") \
+  F(S, NUMBER,    pull_reach,      "spacings", "[0, 1000]",        "6", \
+    "Within this of an object the surface is pulled to its plane, so that its parts above and below meet.") \
+  F(S, NUMBER,    group_distance,  "spacings", "[0, 1000]",        "1", \
+    "Objects that are closer share a plane and an eye.") \
+  F(S, SWITCH,    trapezium,       "",         "",                 "true", \
+    "The map of objects counts only between an object and the eye (Fig. 8).") \
+  F(S, NUMBER,    trapezium_a,     "",         "[0.1, 100]",       "3", \
+    "a of Fig. 8: width of the trapezium behind the object, in the object's.") \
+  F(S, NUMBER,    trapezium_b,     "",         "[0.1, 100]",       "3", \
+    "b of Fig. 8: its width at the eye, in the object's.") \
+  F(S, SWITCH,    traced_caustics, "",         "",                 "true", \
+    "Sunlight that the surface has bent brightens floor, walls and objects (section 2.4).") \
+  F(S, SWITCH,    simple_caustics, "",         "",                 "false", \
+    "Patterns of light by Eq. 4; both may be on.") \
+  F(S, NUMBER,    simple_height,   "",         "[-100, 100]",      "0.6", \
+    "a of Eq. 4: light of the highest water; the lowest has none of it.") \
+  F(S, NUMBER,    simple_slope,    "",         "[-100, 100]",      "2", \
+    "b of Eq. 4: light of slopes.") \
+  F(S, NUMBER,    simple_base,     "",         "[-100, 100]",      "0.6", \
+    "c of Eq. 4: light everywhere.") \
+  F(S, NUMBER,    dispersion,      "",         "[0, 0.5]",         "0", \
+    "Refractive index of blue light less that of red; water has 0.013.")
+
 #define SCENE_POINTS(F, O, L, V, S) \
   F(S, NUMBER,    scale,           "radii",    "[0.1, 5]",         "1.25", \
     "Radius of the spheres drawn, in particle radii.")
@@ -500,6 +556,8 @@
   T(SceneBlock, SCENE_BLOCK) \
   T(SceneDrop, SCENE_DROP) \
   T(SceneEmitter, SCENE_EMITTER) \
+  T(SceneWave, SCENE_WAVE) \
+  T(SceneRipple, SCENE_RIPPLE) \
   T(SceneFluid, SCENE_FLUID) \
   T(SceneSink, SCENE_SINK) \
   T(SceneBox, SCENE_BOX) \
@@ -517,6 +575,7 @@
   T(ScenePoints, SCENE_POINTS) \
   T(SceneRaycast, SCENE_RAYCAST) \
   T(SceneCartoon, SCENE_CARTOON) \
+  T(SceneHeightfield, SCENE_HEIGHTFIELD) \
   T(SceneRender, SCENE_RENDER) \
   T(ScenePush, SCENE_PUSH) \
   T(ScenePour, SCENE_POUR) \

@@ -111,12 +111,8 @@ static int read_name(const Value *value) {
   char list[256];
   scene_choices_list(&choices, list, sizeof list);
   const char *name = cJSON_IsString(value->json) ? value->json->valuestring : NULL;
-  for (int i = 0; name && i < choices.with_later; i++) {
-    if (strcmp(name, choices.names[i]) != 0) continue;
-    if (i < choices.count) return i;
-    scene_fail(value->source, value->path, "\"%s\" is not available in this version; available: %s", name, list);
-    return -1;
-  }
+  for (int i = 0; name && i < choices.count; i++)
+    if (strcmp(name, choices.names[i]) == 0) return i;
   return refuse_name(value, &choices, list, name);
 }
 

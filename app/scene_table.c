@@ -4,9 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Styles that the design names; they are refused with a clear message as long as the renderer does not have them.
-static const char *const later_styles[] = {"heightfield"};
-
 // ---- The table as data ----------------------------------------------------------------------------------------------
 
 #define FIELD(S, type, key, unit, range, fallback, doc)                                                                \
@@ -46,10 +43,6 @@ bool scene_interval_has(const SceneInterval *interval, double value) {
 static void style_choices(SceneChoices *choices) {
   for (int32_t i = 0; i < render_style_count() && choices->count < SCENE_MOST_CHOICES; i++)
     choices->names[choices->count++] = render_style_name(i);
-  choices->with_later = choices->count;
-  for (size_t i = 0; i < sizeof later_styles / sizeof *later_styles; i++)
-    if (!render_style_exists(later_styles[i]) && choices->with_later < SCENE_MOST_CHOICES)
-      choices->names[choices->with_later++] = later_styles[i];
 }
 
 void scene_choices(const SceneField *field, SceneChoices *choices) {
@@ -61,7 +54,6 @@ void scene_choices(const SceneField *field, SceneChoices *choices) {
   snprintf(choices->text, sizeof choices->text, "%s", field->range);
   for (char *rest = choices->text, *name; (name = strtok_r(rest, " |", &rest));)
     choices->names[choices->count++] = name;
-  choices->with_later = choices->count;
 }
 
 void scene_choices_list(const SceneChoices *choices, char *list, size_t size) {

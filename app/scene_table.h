@@ -53,15 +53,15 @@ typedef struct SceneInterval {
 SceneInterval scene_interval(const SceneField *field);
 bool scene_interval_has(const SceneInterval *interval, double value);
 
-/// Names that a CHOICE or STYLE takes. Those of a later version come after the others.
+/// Names that a CHOICE or STYLE takes.
 enum { SCENE_MOST_CHOICES = 16 };
 typedef struct SceneChoices {
   char text[256];                        ///< what the names of a CHOICE point into
-  int count, with_later;                 ///< names of this version; those of later ones included
+  int count;
   const char *names[SCENE_MOST_CHOICES];
 } SceneChoices;
 void scene_choices(const SceneField *field, SceneChoices *choices);
-/// "a, b, c": what this version has.
+/// "a, b, c"
 void scene_choices_list(const SceneChoices *choices, char *list, size_t size);
 
 /// The field of `object` that has this key, its variants' fields included; NULL: none.

@@ -297,6 +297,10 @@ const RenderView *source_view(const Source *source) {
   return &source->view;
 }
 
+const Scene *source_scene(const Source *source) {
+  return &source->scene;
+}
+
 SimWorld *source_world(Source *source) {
   return source->world;
 }

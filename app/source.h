@@ -18,6 +18,7 @@
 
 #include "app/app.h"
 #include "app/options.h"
+#include "app/scene.h"
 #include "render/render.h"
 #include "sim/sim.h"
 
@@ -46,6 +47,8 @@ int64_t source_number(const Source *source);
 /// The look of the present frame: the scene's, as its events have changed it, with --style and --camera on top.
 const RenderSettings *source_settings(const Source *source);
 const RenderView *source_view(const Source *source);
+/// The scene; one without anything in it for files.
+const Scene *source_scene(const Source *source);
 /// The world behind a simulated frame, its profile cleared when the frame began; NULL for files.
 SimWorld *source_world(Source *source);
 

@@ -37,8 +37,7 @@ typedef struct Window {
 
   // What moves
   InteractStrength strength;
-  float lean[2]; // radians, of the tank: to the right and away
-  bool leaning;
+  InteractLean lean;
   double due;       // s, when the next frame may start
   double hand_time; // s, when the hand's pushes were last taken
 
@@ -127,6 +126,7 @@ static void follow_timeline(Window *window) {
 static void show_bodies(Window *window) {
   const SimFrame *frame = &live_frame(window->live)->frame;
   window->input.bodies = (GrabBodies){frame->obstacle_count, frame->obstacles, window->scene->defs.obstacles};
+  window->input.container = frame->container;
 }
 
 static void take_result(Window *window) {
@@ -147,19 +147,12 @@ static void take_result(Window *window) {
   window->input.changed = true;
 }
 
-// Lean the tank towards where the arrow keys want it, in about a third of a second. True when gravity is to be set.
+// Lean the tank as keys and hand want it. True when gravity is to be set.
 static bool lean(Window *window) {
-  double step = 1 / window->options->fps;
-  float share = (float)(1 - exp(-step / 0.12));
-  bool leaned = window->leaning;
-  window->leaning = false;
-  for (int k = 0; k < 2; k++) {
-    float goal = window->input.lean[k] * INTERACT_MAX_LEAN;
-    window->lean[k] += share * (goal - window->lean[k]);
-    if (goal == 0 && fabsf(window->lean[k]) < 1e-3f) window->lean[k] = 0;
-    if (window->lean[k] != 0) window->leaning = true;
-  }
-  return leaned || window->leaning;
+  const WindowInput *input = &window->input;
+  float goal[2];
+  interact_lean_goal(&input->container, input->lean_keys, input->lean_drag, input->height, goal);
+  return interact_lean_step(&window->lean, goal, 1 / window->options->fps);
 }
 
 static LiveInput gather(Window *window) {
@@ -178,7 +171,7 @@ static LiveInput gather(Window *window) {
   if (input.set_gravity) {
     float gravity[3];
     events_gravity(window->scene, ((double)live_frame(window->live)->frame.index + 0.5) * step, gravity);
-    interact_lean(gravity, &view, window->lean[0], window->lean[1], input.gravity);
+    interact_lean(gravity, &view, window->lean.angle[0], window->lean.angle[1], input.gravity);
   }
   return input;
 }
@@ -194,8 +187,7 @@ static bool may_advance(const Window *window) {
 }
 
 static void reset(Window *window) {
-  window->lean[0] = window->lean[1] = 0;
-  window->leaning = false;
+  window->lean = (InteractLean){0};
   // The body slips out of the hand: it is back at its start.
   if (window->input.drag == WINDOW_DRAG_BODY) window->input.drag = WINDOW_DRAG_NONE;
   window->input.grab = (Grab){0};

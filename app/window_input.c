@@ -75,19 +75,37 @@ static bool grasps_body(WindowInput *input) {
                     input->height);
 }
 
+static bool points_at_glass(const WindowInput *input) {
+  RenderView view = camera_view(&input->camera);
+  float origin[3], direction[3];
+  camera_ray(&view, input->cursor[0], input->cursor[1], input->width, input->height, origin, direction);
+  return grab_meets_glass(&input->container, origin, direction);
+}
+
+// The left button leans a glass and looks around beside it; with Alt it is the other way round, so that either can be done
+// however the eye stands. Desktops that keep Alt for themselves leave Ctrl and the right button.
+static bool leans_tank(const WindowInput *input, int button, int mods) {
+  if (mods & GLFW_MOD_SHIFT) return false;
+  if (button == GLFW_MOUSE_BUTTON_RIGHT) return mods & GLFW_MOD_CONTROL;
+  if (button != GLFW_MOUSE_BUTTON_LEFT || mods & GLFW_MOD_CONTROL) return false;
+  return (bool)(mods & GLFW_MOD_ALT) != points_at_glass(input);
+}
+
+static WindowDrag choose_drag(WindowInput *input, int button, int mods) {
+  bool left = button == GLFW_MOUSE_BUTTON_LEFT, shift = mods & GLFW_MOD_SHIFT, control = mods & GLFW_MOD_CONTROL;
+  if (left && !shift && !control && !(mods & GLFW_MOD_ALT) && grasps_body(input)) return WINDOW_DRAG_BODY;
+  if (leans_tank(input, button, mods)) return WINDOW_DRAG_LEAN;
+  if (button == GLFW_MOUSE_BUTTON_RIGHT || (left && control)) return WINDOW_DRAG_WATER;
+  if (button == GLFW_MOUSE_BUTTON_MIDDLE || (left && shift)) return WINDOW_DRAG_PAN;
+  return left ? WINDOW_DRAG_ORBIT : WINDOW_DRAG_NONE;
+}
+
 static void begin_drag(WindowInput *input, int button, int mods) {
-  bool shift = mods & GLFW_MOD_SHIFT, control = mods & GLFW_MOD_CONTROL;
-  bool water = button == GLFW_MOUSE_BUTTON_RIGHT || (button == GLFW_MOUSE_BUTTON_LEFT && control);
-  if (water)
-    input->drag = WINDOW_DRAG_WATER;
-  else if (button == GLFW_MOUSE_BUTTON_MIDDLE || (button == GLFW_MOUSE_BUTTON_LEFT && shift))
-    input->drag = WINDOW_DRAG_PAN;
-  else if (button == GLFW_MOUSE_BUTTON_LEFT)
-    input->drag = grasps_body(input) ? WINDOW_DRAG_BODY : WINDOW_DRAG_ORBIT;
-  else
-    return;
+  input->drag = choose_drag(input, button, mods);
   input->drag_button = button;
-  if (water) interact_begin(&input->hand, shift ? INTERACT_PULL : INTERACT_PUSH, input->cursor[0], input->cursor[1]);
+  if (input->drag == WINDOW_DRAG_WATER)
+    interact_begin(&input->hand, mods & GLFW_MOD_SHIFT ? INTERACT_PULL : INTERACT_PUSH, input->cursor[0],
+                   input->cursor[1]);
 }
 
 // A second button during a drag changes nothing; the button that began it ends it.
@@ -96,6 +114,7 @@ void window_input_button(WindowInput *input, int button, int mods, bool down) {
   if (down || input->drag == WINDOW_DRAG_NONE || button != input->drag_button) return;
   if (input->drag == WINDOW_DRAG_WATER) interact_end(&input->hand);
   if (input->drag == WINDOW_DRAG_BODY) grab_end(&input->grab);
+  input->lean_drag[0] = input->lean_drag[1] = 0;
   input->drag = WINDOW_DRAG_NONE;
 }
 
@@ -107,6 +126,10 @@ void window_input_cursor(WindowInput *input, float x, float y) {
   if (input->drag == WINDOW_DRAG_ORBIT) camera_orbit(&input->camera, dx, dy, input->height);
   if (input->drag == WINDOW_DRAG_PAN) camera_pan(&input->camera, dx, dy, input->height);
   if (input->drag == WINDOW_DRAG_WATER) interact_move(&input->hand, x, y);
+  if (input->drag == WINDOW_DRAG_LEAN) {
+    input->lean_drag[0] += dx;
+    input->lean_drag[1] -= dy;
+  }
   if (input->drag == WINDOW_DRAG_BODY) {
     RenderView view = camera_view(&input->camera);
     grab_move(&input->grab, &view, x, y, input->width, input->height);
@@ -190,6 +213,6 @@ void window_input_poll(GLFWwindow *window, WindowInput *input) {
   input->width = width;
   input->height = height;
   input->scale = scale_y;
-  input->lean[0] = held(window, GLFW_KEY_LEFT, GLFW_KEY_RIGHT);
-  input->lean[1] = held(window, GLFW_KEY_DOWN, GLFW_KEY_UP);
+  input->lean_keys[0] = held(window, GLFW_KEY_LEFT, GLFW_KEY_RIGHT);
+  input->lean_keys[1] = held(window, GLFW_KEY_DOWN, GLFW_KEY_UP);
 }

@@ -15,17 +15,20 @@ typedef enum WindowDrag {
   WINDOW_DRAG_ORBIT,
   WINDOW_DRAG_PAN,
   WINDOW_DRAG_WATER,
-  WINDOW_DRAG_BODY
+  WINDOW_DRAG_BODY,
+  WINDOW_DRAG_LEAN
 } WindowDrag;
 
 typedef struct WindowInput {
-  Camera camera;     ///< moved by drags and the wheel
-  Interact hand;     ///< in the water
-  GrabBodies bodies; ///< of the frame that is shown: what a hand can grasp. The caller's to set
-  Grab grab;         ///< the body in the hand
-  float lean[2];     ///< −1, 0 or 1: arrow keys held, to the right and away
-  int width, height; ///< pixels of the framebuffer; 0 while minimised
-  float scale;       ///< of the monitor's content, 1: a pixel is a dot
+  Camera camera;          ///< moved by drags and the wheel
+  Interact hand;          ///< in the water
+  GrabBodies bodies;      ///< of the frame that is shown: what a hand can grasp. The caller's to set
+  Grab grab;              ///< the body in the hand
+  SimContainer container; ///< the caller's to set: a glass is leaned by a drag that begins on it
+  float lean_keys[2];     ///< −1, 0 or 1: arrow keys held, to the right and away
+  float lean_drag[2];     ///< pixels, to the right and upwards: how far the hand has dragged the tank; 0: let go
+  int width, height;      ///< pixels of the framebuffer; 0 while minimised
+  float scale;            ///< of the monitor's content, 1: a pixel is a dot
 
   WindowDrag drag;
   int drag_button; ///< which began it, and will end it

@@ -56,13 +56,17 @@ static void figures_fit_each_other(void **state) {
   const cJSON *sweeps = cJSON_GetObjectItem(report, "density_and_correct");
   assert_true(number(machine, "fma_per_second") > number(sweeps, "multiply_adds_per_second"));
   assert_true(number(sweeps, "bytes_per_second") > 0 && number(machine, "copy_bytes_per_second") > 0);
-  double parts = 0, total = 0;
+  double parts = 0, total = 0, median = 0;
   cJSON_ArrayForEach(row, cJSON_GetObjectItem(report, "rows")) {
     if (strcmp(cJSON_GetObjectItem(row, "group")->valuestring, "sim") != 0) continue;
     bool whole = !strcmp(cJSON_GetObjectItem(row, "name")->valuestring, "total");
     assert_true(number(row, "least_ms") <= number(row, "median_ms") && number(row, "ns_per_particle") >= 0);
     *(whole ? &total : &parts) += number(row, "least_ms");
+    if (whole) median = number(row, "median_ms");
   }
+  double steps = number(report, "substeps_per_second"), each = number(report, "substeps_per_second_with_a_surface_each");
+  assert_float_equal(steps, number(report, "substeps") / 3 * 1000 / median, 1e-3 * steps);
+  assert_true(each > 0 && each <= steps * 1.0001);
   assert_true(total > 0 && parts <= total); // the least of each stage; they are parts of one whole
   cJSON_Delete(report);
   folder_remove(folder);

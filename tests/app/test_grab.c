@@ -260,6 +260,26 @@ static void nonsense_moves_nothing(void **state) {
   assert_true(grab.target[0] == 0 && grab.target[1] == 0 && grab.target[2] == 0);
 }
 
+static void a_glass_is_met_from_outside(void **state) {
+  (void)state;
+  // Wider along x: the glass is as wide as the shorter side, 2 m, around (3, 2, 0).
+  SimContainer glass = {{0, 1, -1}, {6, 3, 1}, SIM_CONTAINER_GLASS};
+  const struct {
+    float origin[3], direction[3];
+    bool meets;
+  } rows[] = {
+      {{3, 2, 9}, {0, 0, -1}, true},        {{3.9f, 2, 9}, {0, 0, -1}, true}, {{4.1f, 2, 9}, {0, 0, -1}, false},
+      {{3.9f, 9, 0.9f}, {0, -1, 0}, false}, {{3, 9, 0}, {0, -1, 0}, true},    {{3, 3.1f, 9}, {0, 0, -1}, false},
+      {{3, 2, 9}, {0, 0, 1}, false},        {{3, 2, 0}, {0, 0, -1}, false}, // behind the eye; around it
+  };
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    glass.shape = SIM_CONTAINER_GLASS;
+    if (grab_meets_glass(&glass, rows[i].origin, rows[i].direction) != rows[i].meets) fail_msg("row %zu", i);
+    glass.shape = SIM_CONTAINER_BOX;
+    assert_false(grab_meets_glass(&glass, rows[i].origin, rows[i].direction));
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(distances_are_those_on_paper),
@@ -268,6 +288,7 @@ int main(void) {
       cmocka_unit_test(the_nearest_body_is_picked_if_it_can_be_dragged),
       cmocka_unit_test(the_body_stays_under_the_cursor),
       cmocka_unit_test(nonsense_moves_nothing),
+      cmocka_unit_test(a_glass_is_met_from_outside),
   };
   return cmocka_run_group_tests_name("app_grab", tests, NULL, NULL);
 }

@@ -192,6 +192,55 @@ static void a_leaning_tank_sends_water_to_that_side(void **state) {
   assert_near3(leaned, 0, -9.81 * cos(angle), -9.81 * sin(angle), 1e-5);
 }
 
+static void a_hand_leans_a_tank_as_far_as_it_goes(void **state) {
+  (void)state;
+  const SimContainer box = {{0}, {1, 1, 1}, SIM_CONTAINER_BOX}, glass = {{0}, {1, 1, 1}, SIM_CONTAINER_GLASS};
+  const float degree = 3.14159265f / 180, none[2] = {0}, right[2] = {1, 0}, keys[2] = {-1, 1};
+  float goal[2];
+  interact_lean_goal(&box, none, none, HEIGHT, goal);
+  assert_true(goal[0] == 0 && goal[1] == 0);
+  // A tenth of the picture's height is 9°, whatever the height.
+  for (int height = 100; height <= 1600; height *= 4) {
+    const float hand[2] = {0.1f * (float)height, -0.05f * (float)height};
+    interact_lean_goal(&box, none, hand, height, goal);
+    assert_near(goal[0], 9 * degree, 1e-6);
+    assert_near(goal[1], -4.5 * degree, 1e-6);
+  }
+  // Keys and hand add up, and a tank stops at its most where a glass goes on; in any direction.
+  const float hand[2] = {0.1f * HEIGHT, 0}, far[2] = {3e7f, 4e7f};
+  interact_lean_goal(&glass, right, hand, HEIGHT, goal);
+  assert_near(goal[0], 29 * degree, 1e-6);
+  interact_lean_goal(&box, right, hand, HEIGHT, goal);
+  assert_near(goal[0], INTERACT_MAX_LEAN, 1e-6);
+  interact_lean_goal(&glass, none, far, HEIGHT, goal);
+  assert_near(goal[0], 0.6 * INTERACT_MAX_GLASS_LEAN, 1e-6);
+  assert_near(goal[1], 0.8 * INTERACT_MAX_GLASS_LEAN, 1e-6);
+  interact_lean_goal(&box, keys, none, 0, goal);
+  assert_near(hypotf(goal[0], goal[1]), INTERACT_MAX_LEAN, 1e-6);
+}
+
+static void a_tank_springs_back_evenly(void **state) {
+  (void)state;
+  InteractLean lean = {0};
+  const float there[2] = {0.3f, -0.1f}, upright[2] = {0};
+  assert_false(interact_lean_step(&lean, upright, 1.0 / 60)); // it stands: gravity is left alone
+  for (int frame = 0; frame < 20; frame++) assert_true(interact_lean_step(&lean, there, 1.0 / 60));
+  assert_near(lean.angle[0], 0.3 * (1 - exp(-20.0 / 60 / 0.12)), 1e-5);
+  assert_near(lean.angle[1], -lean.angle[0] / 3, 1e-6);
+  int frames = 0;
+  for (float before = lean.angle[0]; interact_lean_step(&lean, upright, 1.0 / 60); before = lean.angle[0], frames++) {
+    assert_true(lean.angle[0] < before && lean.angle[0] >= 0); // never beyond, never a jump
+    assert_true(before - lean.angle[0] < 0.15f * 0.3f);
+  }
+  assert_true(!lean.leans && lean.angle[0] == 0 && lean.angle[1] == 0);
+  assert_in_range(frames, 20, 60); // the last of them has set gravity upright
+  // The same way in steps of any length.
+  InteractLean coarse = {0}, fine = {0};
+  for (int k = 0; k < 10; k++) interact_lean_step(&coarse, there, 0.02);
+  for (int k = 0; k < 100; k++) interact_lean_step(&fine, there, 0.002);
+  assert_near(coarse.angle[0], fine.angle[0], 1e-5);
+}
+
 static void nonsense_gives_no_push(void **state) {
   (void)state;
   SimPush pushes[INTERACT_MAX_PUSHES];
@@ -228,6 +277,8 @@ int main(void) {
       cmocka_unit_test(each_way_is_taken_once),
       cmocka_unit_test(a_short_click_is_not_lost),
       cmocka_unit_test(a_leaning_tank_sends_water_to_that_side),
+      cmocka_unit_test(a_hand_leans_a_tank_as_far_as_it_goes),
+      cmocka_unit_test(a_tank_springs_back_evenly),
       cmocka_unit_test(nonsense_gives_no_push),
       cmocka_unit_test(an_eye_in_the_water_still_pushes_finitely),
   };

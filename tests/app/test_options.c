@@ -11,6 +11,7 @@
 
 #include "app/commands.h"
 #include "app/scene.h"
+#include "app/style_grid.h"
 
 enum { MOST_WORDS = 32 };
 
@@ -104,6 +105,44 @@ static void test_values(void **state) {
   assert_string_equal(o.sets[0], "a.b=1=2");
   assert_string_equal(o.sets[1], "simulation.seed=7");
   options_free(&o);
+}
+
+static void test_several_styles(void **state) {
+  (void)state;
+  Options o = parsed("lido render s -o x --style cartoon,points,cartoon --no-names --set render.style=refraction");
+  assert_int_equal(o.style_count, 3);
+  assert_string_equal(o.styles[0], "cartoon");
+  assert_string_equal(o.styles[1], "points");
+  assert_string_equal(o.styles[2], "cartoon");
+  assert_true(o.no_names);
+  assert_string_equal(o.style, "cartoon"); // a scene is loaded with the first one
+  assert_string_equal(o.sets[1], "render.style=cartoon");
+  options_free(&o);
+  o = parsed("lido render s -o x --style points,cartoon --style raycast"); // the last one wins, as with other options
+  assert_int_equal(o.style_count, 1);
+  assert_string_equal(o.style, "raycast");
+  options_free(&o);
+}
+
+/// As square as can be, filled row by row; every byte of every picture once.
+static void test_grids_of_styles(void **state) {
+  (void)state;
+  const int expected[9][2] = {{0}, {1, 1}, {2, 1}, {2, 2}, {2, 2}, {3, 2}, {3, 2}, {3, 3}, {3, 3}};
+  for (int count = 1; count <= 8; count++) {
+    const StyleGrid grid = style_grid_make(count, 5, 4);
+    assert_true(grid.columns == expected[count][0] && grid.rows == expected[count][1]);
+    assert_true(grid.width == 5 * grid.columns && grid.height == 4 * grid.rows);
+    uint8_t all[15 * 12 * 3] = {0}, cell[5 * 4 * 3];
+    for (int i = 0; i < count; i++) {
+      memset(cell, i + 1, sizeof cell);
+      style_grid_put(&grid, i, cell, all);
+    }
+    for (int y = 0; y < grid.height; y++)
+      for (int x = 0; x < 3 * grid.width; x++) {
+        int place = y / 4 * grid.columns + x / 15;
+        assert_int_equal(all[3 * y * grid.width + x], place < count ? place + 1 : 0);
+      }
+  }
 }
 
 static void test_scenes_of_a_varied_table(void **state) {
@@ -218,8 +257,21 @@ static void test_refusals(void **state) {
       {"lido list --size 10x10", "--size: lido list has no use for it"},
       {"lido -o x", "--output: lido window has no use for it"},
       {"lido --json", "--json: lido window has no use for it"},
-      {"lido --style heightfield", "--style: \"heightfield\" is not available in this version; available: points, refraction, raycast, cartoon"},
-      {"lido --style blue", "--style: must be one of points, refraction, raycast, cartoon, got \"blue\""},
+      {"lido --style blue", "--style: must be one of points, refraction, raycast, cartoon, heightfield, got \"blue\""},
+      {"lido render a -o x --style points,blue", "--style: must be one of points, refraction, raycast, cartoon, heightfield, or up to 8 of them with commas between, got \"points,blue\""},
+      {"lido render a -o x --style points,", "--style: must be one of points, refraction, raycast, cartoon, heightfield, or up to 8 of them with commas between, got \"points,\""},
+      {"lido render a -o x --style ,", "--style: must be one of points, refraction, raycast, cartoon, heightfield, or up to 8 of them with commas between, got \",\""},
+      {"lido render a -o x --style=", "--style: must be one of points, refraction, raycast, cartoon, heightfield, got \"\""},
+      {"lido render a -o x --style pointsx", "--style: must be one of points, refraction, raycast, cartoon, heightfield, got \"pointsx\""},
+      {"lido render a -o x --style points,points,points,points,points,points,points,points,points", "--style: must be one of points, refraction, raycast, cartoon, heightfield, or up to 8 of them with commas between, got \"points,points,points,points,points,points,points,points,points\""},
+      {"lido render a -o x --style points,cartoon --layer depth", "--layer: not together with several styles"},
+      {"lido render a -o x --stats s --style points,cartoon", "--stats: not together with several styles"},
+      {"lido render a -o x --style points,cartoon --size 8193x10", "--size: that many pictures side by side must not be larger than 16384x16384"},
+      {"lido render a -o x --style points --no-names", "--no-names: only several styles side by side have names"},
+      {"lido --style points,cartoon", "--style: lido window takes one style only"},
+      {"lido bench --style points,cartoon", "--style: lido bench takes one style only"},
+      {"lido check a --style points,cartoon", "--style: lido check takes one style only"},
+      {"lido bench --no-names", "--no-names: lido bench has no use for it"},
       {"lido --size 10", "--size: must be WIDTHxHEIGHT, each from 1 to 16384 pixels, like 1280x720, got \"10\""},
       {"lido --threads 0", "--threads: must be a whole number in [1, 256], got \"0\""},
       {"lido --fps nan", "--fps: must be a number in [1, 10000], got \"nan\""},
@@ -332,7 +384,8 @@ static void test_help_names_every_command_and_option(void **state) {
   (void)state;
   const char *const options[] = {"output",    "style", "size",   "frames",  "fps",   "context",   "threads",
                                  "seed",      "set",   "camera", "layer",   "stats", "json",      "schema",
-                                 "reference", "quiet", "help",   "version", "sizes", "particles", "vary"};
+                                 "reference", "quiet", "help",   "version", "sizes", "particles", "vary",
+                                 "no-names"};
   char *text = NULL;
   size_t size;
   FILE *file = open_memstream(&text, &size);
@@ -358,6 +411,8 @@ int main(void) {
       cmocka_unit_test(test_commands_and_sources),
       cmocka_unit_test(test_defaults),
       cmocka_unit_test(test_values),
+      cmocka_unit_test(test_several_styles),
+      cmocka_unit_test(test_grids_of_styles),
       cmocka_unit_test(test_scenes_of_a_varied_table),
       cmocka_unit_test(test_values_that_vary),
       cmocka_unit_test(test_style_and_seed_win_over_set),

@@ -68,6 +68,20 @@ static double compare_png(const char *name_a, const char *name_b, int tolerance)
   return share;
 }
 
+// What ffprobe says about a film: "width,height,frames".
+static void probe(const char *path, char text[128]) {
+  char command[1024];
+  snprintf(command, sizeof command,
+           "ffprobe -v error -count_frames -select_streams v:0 -show_entries "
+           "stream=width,height,nb_read_frames -of csv=p=0 '%s'",
+           path);
+  FILE *pipe = popen(command, "r");
+  assert_non_null(pipe);
+  if (!fgets(text, 128, pipe)) text[0] = '\0';
+  text[strcspn(text, "\r\n")] = '\0';
+  assert_int_equal(pclose(pipe), 0);
+}
+
 // ---- Pictures ----------------------------------------------------------------------------------------------------------------
 
 static void test_pictures(void **state) {
@@ -179,6 +193,93 @@ static void test_no_particles(void **state) {
   check_done(&run);
 }
 
+// ---- Several styles side by side ---------------------------------------------------------------------------------------------
+
+// How many pixels of a place of 96 × 54 in `all`, at (x, y), are not those of `cell`, within and without the corner that a
+// name takes; black where `cell` is NULL.
+static int count_differences(const Image *all, int x, int y, const Image *cell, bool corner) {
+  int count = 0;
+  for (int row = 0; row < 54; row++)
+    for (int column = 0; column < 96; column++) {
+      static const uint8_t black[3] = {0};
+      const uint8_t *expected = cell ? cell->bytes + 3 * (96 * row + column) : black;
+      bool in_corner = row < 2 * 11 && column < 14 * 6;
+      if (in_corner == corner)
+        count += memcmp(all->bytes + 3 * (all->width * (y + row) + x + column), expected, 3) != 0;
+    }
+  return count;
+}
+
+static const char *const three_styles[] = {"points", "refraction", "cartoon"};
+
+// Each place holds exactly the picture that its style makes alone.
+static void test_styles_side_by_side(void **state) {
+  (void)state;
+  LidoRun run = {0};
+  LIDO(&run, "render", scene, "--frames", "2:4", SIZE, "--style", "points,refraction,cartoon", "--no-names", "-o",
+       in(folder, "out/f_%d.png"));
+  check_done(&run);
+  assert_non_null(strstr(run.text, "lido: 2 frames written to "));
+  LIDO(&run, "render", scene, "--frames", "3:4", SIZE, "-q", "--style", "points,refraction,cartoon", "-o",
+       in(folder, "named.png"));
+  check_done(&run);
+  Image all, named, cell;
+  read_png("out/f_3.png", &all);
+  read_png("named.png", &named);
+  assert_true(all.width == 192 && all.height == 108 && named.width == 192 && named.height == 108);
+  for (int i = 0; i < 3; i++) {
+    LIDO(&run, "render", scene, "--frames", "3:4", SIZE, "-q", "--style", three_styles[i], "-o",
+         in(folder, "cell.png"));
+    check_done(&run);
+    read_png("cell.png", &cell);
+    int x = i % 2 * 96, y = i / 2 * 54;
+    assert_int_equal(count_differences(&all, x, y, &cell, false) + count_differences(&all, x, y, &cell, true), 0);
+    assert_int_equal(count_differences(&named, x, y, &cell, false), 0);
+    assert_in_range(count_differences(&named, x, y, &cell, true), 100, 14 * 6 * 2 * 11); // letters on a veil
+    assert_true(count_differences(&all, 96 - x, y, &cell, false) > 100); // the one beside it is another one
+    image_free(&cell);
+  }
+  assert_int_equal(count_differences(&all, 96, 54, NULL, false) + count_differences(&all, 96, 54, NULL, true), 0);
+  image_free(&all);
+  image_free(&named);
+}
+
+// The same as raw frames, as a film and from particle files.
+static void test_styles_side_by_side_anywhere(void **state) {
+  (void)state;
+  const char *path = in(folder, "raw.rgb");
+  LidoRun run = {.stdout_to = path};
+  LIDO(&run, "render", scene, "--frames", "2", SIZE, "-q", "--style", "points,refraction", "-o", "-");
+  check_done(&run);
+  run = (LidoRun){0};
+  LIDO(&run, "render", scene, "--frames", "1:2", SIZE, "-q", "--style", "points,refraction", "-o", in(folder, "f.png"));
+  check_done(&run);
+  size_t size;
+  uint8_t *bytes = file_get(path, &size);
+  Image image;
+  read_png("f.png", &image);
+  assert_true(image.width == 192 && image.height == 54);
+  assert_int_equal(size, 2 * 192 * 54 * 3);
+  assert_memory_equal(image.bytes, bytes + 192 * 54 * 3, 192 * 54 * 3);
+  image_free(&image);
+  free(bytes);
+  LIDO(&run, "simulate", scene, "--frames", "2", "-q", "-o", in(folder, "p_%d.ply"));
+  check_done(&run);
+  LIDO(&run, "render", in(folder, "p_%d.ply"), "--frames", "1:2", SIZE, "-q", "--style", "points,refraction", "-o",
+       in(folder, "g.png"));
+  check_done(&run);
+  read_png("g.png", &image);
+  assert_true(image.width == 192 && image.height == 54);
+  image_free(&image);
+  if (system("command -v ffmpeg ffprobe >/dev/null") != 0) return;
+  char text[128];
+  LIDO(&run, "render", scene, "--frames", "3", SIZE, "-q", "--style", "points,refraction", "-o",
+       in(folder, "film.mp4"));
+  check_done(&run);
+  probe(in(folder, "film.mp4"), text);
+  assert_string_equal(text, "192,54,3");
+}
+
 // ---- Contexts ------------------------------------------------------------------------------------------------------------------
 
 static void test_contexts(void **state) {
@@ -225,25 +326,11 @@ static void test_layers(void **state) {
   LIDO(&run, "render", scene, "--frames", "1", SIZE, "-q", "--layer", "smell", "-o", in(folder, "out/x.png"));
   check_said(&run, 2, "--layer smell: style 'refraction' has no such layer; it has: ");
   assert_int_equal(folder_count(in(folder, "out")), 0);
-  LIDO(&run, "render", scene, "--frames", "1", "--style", "heightfield", "-o", in(folder, "out/x.png"));
-  check_said(&run, 2, "style");
+  LIDO(&run, "render", scene, "--frames", "1", "--style", "blue", "-o", in(folder, "out/x.png"));
+  check_said(&run, 2, "--style: must be one of points, ");
 }
 
 // ---- Films and raw frames --------------------------------------------------------------------------------------------------------
-
-// What ffprobe says about a film: "width,height,frames".
-static void probe(const char *path, char text[128]) {
-  char command[1024];
-  snprintf(command, sizeof command,
-           "ffprobe -v error -count_frames -select_streams v:0 -show_entries "
-           "stream=width,height,nb_read_frames -of csv=p=0 '%s'",
-           path);
-  FILE *pipe = popen(command, "r");
-  assert_non_null(pipe);
-  if (!fgets(text, 128, pipe)) text[0] = '\0';
-  text[strcspn(text, "\r\n")] = '\0';
-  assert_int_equal(pclose(pipe), 0);
-}
 
 static void test_film(void **state) {
   (void)state;
@@ -441,6 +528,8 @@ int main(void) {
       cmocka_unit_test_setup_teardown(test_from_files, set_up, tear_down),
       cmocka_unit_test_setup_teardown(test_foreign_series, set_up, tear_down),
       cmocka_unit_test_setup_teardown(test_no_particles, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(test_styles_side_by_side, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(test_styles_side_by_side_anywhere, set_up, tear_down),
       cmocka_unit_test_setup_teardown(test_contexts, set_up, tear_down),
       cmocka_unit_test_setup_teardown(test_layers, set_up, tear_down),
       cmocka_unit_test_setup_teardown(test_film, set_up, tear_down),

@@ -305,7 +305,45 @@ static void test_defaults_are_those_of_the_libraries(void **state) {
   assert_true(a->sigma == b->sigma && a->window == b->window && a->reach == b->reach);
   assert_true(a->iterations == b->iterations && a->view_dependent == b->view_dependent);
   assert_true(a->splashes_apart == b->splashes_apart && a->surface_only == b->surface_only);
+  const RenderHeightfield *h = &look.heightfield, *own = &best.heightfield;
+#define SAME(field) assert_true(h->field == own->field)
+  SAME(smoothing), SAME(drops), SAME(mapped), SAME(eyes), SAME(access), SAME(plane_reach), SAME(pull_reach);
+  SAME(group_distance), SAME(trapezium), SAME(trapezium_a), SAME(trapezium_b), SAME(traced_caustics);
+  SAME(simple_caustics), SAME(simple_height), SAME(simple_slope), SAME(simple_base), SAME(dispersion);
+#undef SAME
   scene_free(&scene);
+}
+
+// Every key of the style, with a value that no other key has.
+static void test_keys_of_the_height_field_arrive(void **state) {
+  (void)state;
+  Scene scene =
+      load("{\"version\": 1, \"render\": {\"heightfield\": {\"smoothing\": 1.5, \"drops\": false, \"mapped\": false,\n"
+           "\"eyes\": \"scaled\", \"access\": \"direction\", \"plane_reach\": 20, \"pull_reach\": 7, "
+           "\"group_distance\": 5,\n"
+           "\"trapezium\": false, \"trapezium_a\": 4, \"trapezium_b\": 2, \"traced_caustics\": false,\n"
+           "\"simple_caustics\": true, \"simple_height\": 0.25, \"simple_slope\": -3, \"simple_base\": 0.75,\n"
+           "\"dispersion\": 0.125}}}");
+  const RenderHeightfield h = scene_render_settings(&scene).heightfield;
+  assert_true(h.smoothing == 1.5f && !h.drops && !h.mapped && h.eyes == RENDER_EYES_SCALED);
+  assert_true(h.access == RENDER_ACCESS_DIRECTION && h.plane_reach == 20 && h.pull_reach == 7);
+  assert_true(h.group_distance == 5 && !h.trapezium && h.trapezium_a == 4 && h.trapezium_b == 2);
+  assert_true(!h.traced_caustics && h.simple_caustics && h.simple_height == 0.25f && h.simple_slope == -3);
+  assert_true(h.simple_base == 0.75f && h.dispersion == 0.125f);
+  scene_free(&scene);
+  refused("{\"version\": 1, \"render\": {\"heightfield\": {\"eyes\": \"eech\"}}}",
+          "t.json:1: render.heightfield.eyes: must be one of each, scaled, one, got \"eech\", did you mean \"each\"?");
+  refused("{\"version\": 1, \"render\": {\"heightfield\": {\"acess\": \"point\"}}}",
+          "t.json:1: render.heightfield.acess: unknown key, did you mean \"access\"?");
+}
+
+/// The object with these keys, "render.heightfield".
+static const SceneObject *object_of(const char *keys) {
+  char parts[64];
+  snprintf(parts, sizeof parts, "%s", keys);
+  const SceneObject *object = &scene_top;
+  for (char *rest = parts, *key; (key = strtok_r(rest, ".", &rest));) object = scene_field_find(object, key)->object;
+  return object;
 }
 
 static void test_names_in_the_table_stand_for_the_right_values(void **state) {
@@ -320,6 +358,7 @@ static void test_names_in_the_table_stand_for_the_right_values(void **state) {
               {"fluid", "type", "block", FLUID_BLOCK},
               {"fluid", "type", "drop", FLUID_DROP},
               {"fluid", "type", "emitter", FLUID_EMITTER},
+              {"fluid", "type", "ripple", FLUID_RIPPLE},
               {"fluid", "shape", "disc", EMITTER_DISC},
               {"fluid", "shape", "rectangle", EMITTER_RECTANGLE},
               {"obstacles", "type", "box", OBSTACLE_BOX},
@@ -339,6 +378,11 @@ static void test_names_in_the_table_stand_for_the_right_values(void **state) {
               {"environment", "floor", "none", RENDER_FLOOR_NONE},
               {"render", "tone_map", "none", RENDER_TONE_NONE},
               {"render", "tone_map", "filmic", RENDER_TONE_FILMIC},
+              {"render.heightfield", "eyes", "each", RENDER_EYES_EACH},
+              {"render.heightfield", "eyes", "scaled", RENDER_EYES_SCALED},
+              {"render.heightfield", "eyes", "one", RENDER_EYES_ONE},
+              {"render.heightfield", "access", "point", RENDER_ACCESS_POINT},
+              {"render.heightfield", "access", "direction", RENDER_ACCESS_DIRECTION},
               {"events", "type", "push", EVENT_PUSH},
               {"events", "type", "pour", EVENT_POUR},
               {"events", "type", "tilt", EVENT_TILT},
@@ -347,9 +391,8 @@ static void test_names_in_the_table_stand_for_the_right_values(void **state) {
               {"events", "type", "drag", EVENT_DRAG},
               {"events", "type", "emitter", EVENT_EMITTER}};
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-    const SceneField *object = scene_field_find(&scene_top, rows[i].object);
     SceneChoices choices;
-    scene_choices(scene_field_find(object->object, rows[i].key), &choices);
+    scene_choices(scene_field_find(object_of(rows[i].object), rows[i].key), &choices);
     assert_in_range(rows[i].value, 0, choices.count - 1);
     assert_string_equal(choices.names[rows[i].value], rows[i].name);
   }
@@ -420,31 +463,47 @@ static void test_ranges_are_those_of_the_simulator(void **state) {
   assert_int_equal(checked, 14);
 }
 
-/// Both ends of every range of light, environment and render must suit the renderer.
+/// Whether the renderer takes the scene with a number, or three, at the end of its range.
+static void check_end(const SceneField *field, size_t offset, double value) {
+  bool vector = field->type == SCENE_VECTOR || field->type == SCENE_DIRECTION || field->type == SCENE_OPTIONAL_VECTOR;
+  Scene scene = load("{\"version\": 1}");
+  char *member = (char *)&scene + offset;
+  for (int k = 0; k < (vector ? 3 : 1); k++) {
+    if (field->type == SCENE_INTEGER)
+      *(int32_t *)member = (int32_t)value;
+    else
+      ((float *)member)[k] = (float)value;
+  }
+  RenderSettings settings = scene_render_settings(&scene);
+  RenderError error;
+  if (!render_settings_check(&settings, &error)) fail_msg("%s: %s", field->key, error.message);
+  scene_free(&scene);
+}
+
+static int check_ends(const SceneObject *object, size_t offset) {
+  int checked = 0;
+  for (int i = 0; i < object->field_count; i++) {
+    const SceneField *field = &object->fields[i];
+    if (field->type == SCENE_OBJECT) checked += check_ends(field->object, offset + field->offset);
+    if (*field->range != '[' && *field->range != '(') continue;
+    SceneInterval interval = scene_interval(field);
+    check_end(field, offset + field->offset, interval.low);
+    check_end(field, offset + field->offset, interval.high);
+    checked++;
+  }
+  return checked;
+}
+
+/// Both ends of every range of light, environment and render, and of the styles in it, must suit the renderer.
 static void test_ranges_suit_the_renderer(void **state) {
   (void)state;
   const char *const objects[] = {"light", "environment", "render"};
   int checked = 0;
   for (size_t o = 0; o < sizeof objects / sizeof *objects; o++) {
     const SceneField *owner = scene_field_find(&scene_top, objects[o]);
-    for (int i = 0; i < owner->object->field_count; i++) {
-      const SceneField *field = &owner->object->fields[i];
-      bool vector = field->type == SCENE_VECTOR || field->type == SCENE_DIRECTION;
-      if (!vector && field->type != SCENE_NUMBER && field->type != SCENE_OPTIONAL) continue;
-      SceneInterval interval = scene_interval(field);
-      for (int end = 0; end < 2; end++) {
-        Scene scene = load("{\"version\": 1}");
-        float *member = (float *)((char *)&scene + owner->offset + field->offset);
-        for (int k = 0; k < (vector ? 3 : 1); k++) member[k] = (float)(end ? interval.high : interval.low);
-        RenderSettings settings = scene_render_settings(&scene);
-        RenderError error;
-        if (!render_settings_check(&settings, &error)) fail_msg("%s.%s: %s", objects[o], field->key, error.message);
-        scene_free(&scene);
-        checked++;
-      }
-    }
+    checked += check_ends(owner->object, owner->offset);
   }
-  assert_true(checked >= 20);
+  assert_true(checked >= 70);
 }
 
 static void test_camera_is_found_when_none_is_given(void **state) {
@@ -498,17 +557,24 @@ static void test_keys_are_known_and_stand_once(void **state) {
   refused("{\"zzz\": 1,\n\"version\": 2}", "t.json:2: version: must be 1, got 2");
 }
 
-static void test_what_comes_later_is_refused_by_name(void **state) {
+static void test_styles_are_those_of_the_renderer(void **state) {
   (void)state;
-  refused("{\"version\": 1, \"render\": {\"style\": \"heightfield\"}}",
-          "t.json:1: render.style: \"heightfield\" is not available in this version; available: points, refraction, raycast, cartoon");
+  for (int32_t i = 0; i < render_style_count(); i++) {
+    char text[120];
+    snprintf(text, sizeof text, "{\"version\": 1, \"render\": {\"style\": \"%s\"}}", render_style_name(i));
+    Scene scene = load(text);
+    assert_string_equal(scene_render_settings(&scene).style, render_style_name(i));
+    scene_free(&scene);
+  }
+  refused("{\"version\": 1, \"render\": {\"style\": \"blue\"}}",
+          "t.json:1: render.style: must be one of points, refraction, raycast, cartoon, heightfield, got \"blue\"");
 }
 
 #define OBSTACLE(text) "{\"version\": 1, \"obstacles\": [{\"type\": " text ", \"position\": [1, 1, 0.5]}]}"
 #define EMITTER(text)                                                                                                  \
   "{\"version\": 1, \"fluid\": [{\"type\": \"emitter\", \"direction\": [0, -1, 0], \"position\": [1, 1, 0.5]" text "}" \
-                                                                                                                   "]" \
-                                                                                                                   "}"
+  "]"                                                                                                                  \
+  "}"
 
 static void test_bodies_must_make_sense(void **state) {
   (void)state;
@@ -551,6 +617,62 @@ static void test_emitters_and_drops_must_make_sense(void **state) {
                      "{\"min\": [0, 0, 0], \"max\": [1, 0.8, 0.5]},"
                      "{\"type\": \"drop\", \"centre\": [1.7, 1, 0.7], \"radius\": 0.25}]}");
   scene_free(&scene);
+}
+
+#define RIPPLE(waves, rest)                                                                                            \
+  "{\"version\": 1, \"fluid\": [{\"type\": \"ripple\", \"level\": 0.5,\n\"waves\": [" waves "]}]" rest "}"
+
+static void test_a_ripple_becomes_waves(void **state) {
+  (void)state;
+  Scene scene = load(RIPPLE("{\"amplitude\": 0.01, \"wavelength\": 0.5, \"direction\": [3, 7, -4], \"phase\": 90}, "
+                            "{\"amplitude\": 0.02, \"wavelength\": 0.25, \"standing\": true}",
+                            ""));
+  SimWorldDef def = scene_world_def(&scene);
+  assert_true(def.ripple && def.ripple_level == 0.5f && def.wave_count == 2 && def.block_count == 0);
+  assert_true(def.waves[0].amplitude == 0.01f && def.waves[0].wavelength == 0.5f && !def.waves[0].standing);
+  assert_true(def.waves[0].direction[0] == 3 && def.waves[0].direction[1] == -4);
+  assert_float_equal(def.waves[0].phase, 1.5707963f, 1e-6);
+  assert_true(def.waves[1].direction[0] == 1 && def.waves[1].direction[1] == 0 && def.waves[1].standing);
+  assert_int_equal(scene_particle_count(&scene), 0);
+  AppError error = {0};
+  SimWorld *world = scene_world_create(&scene, 1, &error);
+  assert_non_null(world);
+  sim_world_destroy(world);
+  scene_free(&scene);
+  scene = load(RIPPLE("", "")); // level water
+  assert_true(scene_world_def(&scene).ripple && scene_world_def(&scene).wave_count == 0);
+  scene_free(&scene);
+  scene = load("{\"version\": 1}");
+  assert_true(!scene_ripple(&scene) && !scene_world_def(&scene).ripple);
+  scene_free(&scene);
+}
+
+static void test_ripples_must_make_sense(void **state) {
+  (void)state;
+  refused("{\"version\": 1, \"fluid\": [{\"type\": \"ripple\"}]}", "t.json:1: fluid.0.level: is missing");
+  refused(RIPPLE("{\"amplitude\": 0.01}", ""), "t.json:2: fluid.0.waves.0.wavelength: is missing");
+  refused(RIPPLE("{\"amplitude\": 0.01, \"wavelength\": 0.01}", ""),
+          "t.json:2: fluid.0.waves.0.wavelength: must be at least 2 x particle_radius = 0.035 m, got 0.01");
+  refused(RIPPLE("{\"amplitude\": 0.01, \"wavelength\": 1, \"direction\": [0, 1, 0]}", ""),
+          "t.json:2: fluid.0.waves.0.direction: must not point straight up or down");
+  refused(
+      RIPPLE("{\"amplitude\": 0.6, \"wavelength\": 1}", ""),
+      "t.json:1: fluid.0: its waves reach from -0.1 to 1.1 m, which must lie in the container, between 0 and 1.6 m");
+  refused("{\"version\": 1, \"fluid\": [{\"type\": \"ripple\", \"level\": 0.5},\n{\"min\": [0, 0, 0], \"max\": [1, 1, "
+          "1]}]}",
+          "t.json:1: fluid.0: a ripple must be the only water of a scene");
+  refused("{\"version\": 1, \"fluid\": [{\"min\": [0, 0, 0], \"max\": [1, 1, 1]},\n{\"type\": \"ripple\", \"level\": "
+          "0.5}]}",
+          "t.json:2: fluid.1: a ripple must be the only water of a scene");
+  refused(RIPPLE("", ", \"sinks\": [{\"min\": [0, 0, 0], \"max\": [1, 1, 1]}]"),
+          "t.json:2: sinks.0: a ripple has no particles that it could swallow");
+  refused(RIPPLE("", ", \"simulation\": {\"gravity\": [0, 0, 0]}"),
+          "t.json:2: simulation.gravity: must point downwards for a ripple");
+  refused(RIPPLE("", ", \"obstacles\": [{\"type\": \"sphere\", \"radius\": 0.1, \"position\": [1, 1, 0.5], "
+                     "\"motion\": \"floating\"}]"),
+          "t.json:2: obstacles.0.motion: nothing floats on a ripple: it has no particles to carry it");
+  refused(RIPPLE("", ", \"events\": [{\"type\": \"pour\", \"min\": [0, 0, 0], \"max\": [1, 1, 1]}]"),
+          "t.json:2: events.0: no water can be poured into a ripple");
 }
 
 #define BALL(name)                                                                                                     \
@@ -639,6 +761,7 @@ int main(void) {
       cmocka_unit_test(test_defaults_of_bodies_are_the_simulators),
       cmocka_unit_test(test_render_settings_and_view_hold_the_scene),
       cmocka_unit_test(test_defaults_are_those_of_the_libraries),
+      cmocka_unit_test(test_keys_of_the_height_field_arrive),
       cmocka_unit_test(test_names_in_the_table_stand_for_the_right_values),
       cmocka_unit_test(test_rows_of_the_table_make_sense),
       cmocka_unit_test(test_ranges_are_those_of_the_simulator),
@@ -646,10 +769,12 @@ int main(void) {
       cmocka_unit_test(test_camera_is_found_when_none_is_given),
       cmocka_unit_test(test_messages_name_line_path_and_cause),
       cmocka_unit_test(test_keys_are_known_and_stand_once),
-      cmocka_unit_test(test_what_comes_later_is_refused_by_name),
+      cmocka_unit_test(test_styles_are_those_of_the_renderer),
       cmocka_unit_test(test_boxes_must_make_sense),
       cmocka_unit_test(test_bodies_must_make_sense),
       cmocka_unit_test(test_emitters_and_drops_must_make_sense),
+      cmocka_unit_test(test_a_ripple_becomes_waves),
+      cmocka_unit_test(test_ripples_must_make_sense),
       cmocka_unit_test(test_names_must_stand_for_something),
       cmocka_unit_test(test_syntax_errors_name_line_and_cause),
       cmocka_unit_test(test_byte_order_mark_is_accepted),

@@ -4,8 +4,8 @@
 #include <math.h>
 #include <unistd.h>
 
-static const char *const shipped[] = {"dam_break", "double_dam_break", "glass", "ocean_waves", "pontoon",
-                                      "splash",    "spouts",           "steps", "still_pool",  "wave",
+static const char *const shipped[] = {"dam_break", "double_dam_break", "glass", "ocean_waves", "pontoon",    "ripple",
+                                      "splash",    "spouts",           "steps", "still_pool",  "table_pool", "wave",
                                       "wave_pool"};
 
 static bool same_fields(const SceneObject *object, const char *a, const char *b);

@@ -84,8 +84,9 @@ static void test_mistakes_name_the_set(void **state) {
        "--set simulation.cfl=NaN: simulation.cfl: must be a number in [0.05, 2] spacings, got \"NaN\""},
       {{"simulation.cfl=1e999"}, "--set simulation.cfl=1e999: simulation.cfl: must be in [0.05, 2] spacings, got inf"},
       {{"simulation.clf=1"}, "--set simulation.clf=1: simulation.clf: unknown key, did you mean \"cfl\"?"},
-      {{"render.style=heightfield"},
-       "--set render.style=heightfield: render.style: \"heightfield\" is not available in this version; available: points, refraction, raycast, cartoon"},
+      {{"render.style=hightfield"},
+       "--set render.style=hightfield: render.style: must be one of points, refraction, raycast, cartoon, heightfield, "
+       "got \"hightfield\", did you mean \"heightfield\"?"},
       {{"fluid.0.min=[2,0,0]"},
        "--set fluid.0.min=[2,0,0]: fluid.0: min must be less than max, but in x 2 is not less than 1"},
       {{"fluid.5.min=[2,0,0]"}, "--set fluid.5.min=[2,0,0]: the list has 1 items, the next would be 1"},

@@ -58,6 +58,13 @@ FULL = {
     ],
 }
 
+# The one kind of water that stands alone.
+RIPPLE = {
+    "version": 1,
+    "fluid": [{"type": "ripple", "level": 0.5,
+               "waves": [{"amplitude": 0.01, "wavelength": 1, "direction": [1, 0, 1], "phase": 30, "standing": True}]}],
+}
+
 # Key path and a value that neither parser nor schema takes; DELETE takes a required key away.
 DELETE = object()
 WRONG = [
@@ -73,15 +80,21 @@ WRONG = [
     ("obstacles.0.type", DELETE), ("obstacles.0.radius", 1), ("obstacles.1.radius", 0), ("obstacles.2.height", DELETE),
     ("obstacles.2.motion", "flying"), ("obstacles.3.name", 3), ("obstacles.4.steps", 0), ("obstacles.4.keys", {}),
     ("obstacles.4.keys.1.time", DELETE), ("obstacles.4.density", 0), ("camera.fov", 1), ("camera.fov", None), ("camera.eye", [1, 2]),
-    ("environment.sky", "blue"), ("environment.floor_level", "x"), ("render.style", "heightfield"),
+    ("environment.sky", "blue"), ("environment.floor_level", "x"), ("render.style", "blue"),
     ("render.points.scale", 6), ("render.points.size", 1), ("events.0.time", -1), ("events.0.gravity", [0, 0, 0]),
-    ("events.1.max", DELETE), ("events.3.name", "heightfield"), ("events.4.type", "drag"),
+    ("events.1.max", DELETE), ("events.3.name", "blue"), ("events.4.type", "drag"),
     ("events.5.obstacle", None), ("events.5.position", DELETE), ("events.6.on", DELETE), ("events.6.emitter", 1.5),
 ]  # fmt: skip
+WRONG_RIPPLES = [
+    ("fluid.0.level", DELETE), ("fluid.0.level", "x"), ("fluid.0.min", [0, 0, 0]), ("fluid.0.waves", {}),
+    ("fluid.0.waves.0.amplitude", -1), ("fluid.0.waves.0.wavelength", 0), ("fluid.0.waves.0.wavelength", DELETE),
+    ("fluid.0.waves.0.direction", [1, 0]), ("fluid.0.waves.0.phase", 400), ("fluid.0.waves.0.standing", 1),
+    ("fluid.0.waves.0.speed", 1),
+]
 
 
-def changed(path, value):
-    scene = copy.deepcopy(FULL)
+def changed(full, path, value):
+    scene = copy.deepcopy(full)
     *parents, last = [int(key) if key.isdigit() else key for key in path.split(".")]
     here = scene
     for key in parents:
@@ -108,20 +121,21 @@ def main():
     failures = []
     scenes = {p.name: json.loads(p.read_text(encoding="utf-8")) for p in sorted((SOURCES / "configs").glob("*.json"))}
     del scenes["scene.schema.json"]
-    for name, scene in {**scenes, "everything": FULL}.items():
+    for name, scene in {**scenes, "everything": FULL, "a ripple": RIPPLE}.items():
         printed = check(scene)
         if printed.returncode != 0:
             failures.append(f"{name}: {printed.stderr.decode()}")
             continue
         for what, text in ((name, scene), (name + " as printed", json.loads(printed.stdout))):
             failures += [f"{what}: {e.json_path}: {e.message[:200]}" for e in validator.iter_errors(text)]
-    for path, value in WRONG:
-        scene = changed(path, value)
+    mistakes = [(FULL, *mistake) for mistake in WRONG] + [(RIPPLE, *mistake) for mistake in WRONG_RIPPLES]
+    for full, path, value in mistakes:
+        scene = changed(full, path, value)
         if validator.is_valid(scene):
             failures.append(f"the schema takes {path} = {value}")
         if check(scene).returncode != 2:
             failures.append(f"the parser takes {path} = {value}")
-    print("\n".join(failures) or f"{len(scenes)} scenes and {len(WRONG)} mistakes: schema and parser agree")
+    print("\n".join(failures) or f"{len(scenes)} scenes and {len(mistakes)} mistakes: schema and parser agree")
     return 1 if failures else 0
 
 

@@ -230,7 +230,9 @@ def case_water_answers(folder):
     for name, hand in [("push", lambda window: stroke(window, 3, frames=12)),
                        ("push with one button", lambda window: stroke(window, 1, "ctrl", frames=12)),
                        ("pull", lambda window: stroke(window, 3, "shift", frames=12)),
-                       ("lean", lambda window: hold(window, "Right"))]:
+                       ("lean", lambda window: hold(window, "Right")),
+                       ("lean by hand", lambda window: stroke(window, 1, "alt", frames=12)),
+                       ("lean with the right button", lambda window: stroke(window, 3, "ctrl", frames=12))]:
         moved = largest_energy(folder, hand)
         print(f"  {name}: {moved:.4g} J against {calm:.4g} J")
         assert moved > 8 * calm, f"{name}: the water did not answer: {moved} J against {calm} J"
@@ -254,6 +256,26 @@ def case_body_answers(folder):
         energies.append(largest_energy(folder, drag, scene=scene))
     print(f"  dragged: {energies[1]:.4g} J against {energies[0]:.4g} J")
     assert energies[1] > 8 * energies[0], "the water did not answer to the body"
+
+
+def case_glass_leans(folder):
+    """A left drag on the glass leans it and moves the water; beside it, it looks around and the water stays."""
+    glass = dict(POOL, container={"shape": "glass", "min": [0, 0, 0], "max": [0.6, 0.8, 0.6]},
+                 fluid=[{"type": "block", "min": [0, 0, 0], "max": [0.6, 0.3, 0.6]}],
+                 camera={"eye": [0.3, 0.4, 2.5], "target": [0.3, 0.4, 0.3]})
+
+    def drag(x):
+        def act(window):
+            end = window.frame() + 24
+            xdotool("mousemove", "--window", window.id, x, 160, "mousedown", 1)
+            for step in range(1, 6):
+                xdotool("mousemove", "--window", window.id, x + 12 * step, 160 - 4 * step)
+            window.wait_frame(end)
+            xdotool("mouseup", 1)
+        return act
+    beside, on = (largest_energy(folder, drag(x), scene=glass) for x in [40, 240])
+    print(f"  dragged: {on:.4g} J against {beside:.4g} J")
+    assert on > 8 * beside, "the water did not answer to the glass"
 
 
 def case_pause_step_reset(folder):

@@ -35,6 +35,9 @@ static void each_drag_moves_what_it_says(void **state) {
       {GLFW_MOUSE_BUTTON_RIGHT, GLFW_MOD_SHIFT, WINDOW_DRAG_WATER, INTERACT_PULL},
       {GLFW_MOUSE_BUTTON_LEFT, GLFW_MOD_CONTROL, WINDOW_DRAG_WATER, INTERACT_PUSH},
       {GLFW_MOUSE_BUTTON_LEFT, GLFW_MOD_CONTROL | GLFW_MOD_SHIFT, WINDOW_DRAG_WATER, INTERACT_PULL},
+      {GLFW_MOUSE_BUTTON_LEFT, GLFW_MOD_ALT, WINDOW_DRAG_LEAN, INTERACT_NONE},
+      {GLFW_MOUSE_BUTTON_RIGHT, GLFW_MOD_CONTROL, WINDOW_DRAG_LEAN, INTERACT_NONE},
+      {GLFW_MOUSE_BUTTON_RIGHT, GLFW_MOD_CONTROL | GLFW_MOD_SHIFT, WINDOW_DRAG_WATER, INTERACT_PULL},
       {GLFW_MOUSE_BUTTON_4, 0, WINDOW_DRAG_NONE, INTERACT_NONE},
   };
   for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
@@ -106,6 +109,51 @@ static void a_left_drag_on_a_draggable_body_moves_it(void **state) {
   }
 }
 
+static void a_drag_that_leans_follows_the_hand(void **state) {
+  (void)state;
+  WindowInput input = fresh();
+  window_input_cursor(&input, 300, 200);
+  window_input_button(&input, GLFW_MOUSE_BUTTON_LEFT, GLFW_MOD_ALT, true);
+  window_input_cursor(&input, 340, 190);
+  window_input_cursor(&input, 350, 170);
+  assert_true(input.lean_drag[0] == 50 && input.lean_drag[1] == 30); // to the right and upwards
+  window_input_cursor(&input, 300, 200);
+  assert_true(input.lean_drag[0] == 0 && input.lean_drag[1] == 0);
+  window_input_cursor(&input, 200, 200);
+  window_input_button(&input, GLFW_MOUSE_BUTTON_LEFT, 0, false); // Alt may be let go before
+  assert_true(input.lean_drag[0] == 0 && input.drag == WINDOW_DRAG_NONE);
+}
+
+static void a_drag_that_begins_on_a_glass_leans_it(void **state) {
+  (void)state;
+  const SimObstacle body = {.shape = SIM_SPHERE, .size = {0.1f}, .rotation = {0, 0, 0, 1}};
+  SimObstacleDef def = sim_default_obstacle_def();
+  def.motion = SIM_DRAGGABLE;
+  const SimContainer glass = {{-0.5f, -0.5f, -0.5f}, {0.5f, 0.5f, 0.5f}, SIM_CONTAINER_GLASS};
+  const struct {
+    float x;
+    int mods;
+    WindowDrag drag;
+  } rows[] = {
+      {450, 0, WINDOW_DRAG_LEAN},
+      {450, GLFW_MOD_ALT, WINDOW_DRAG_ORBIT},
+      {450, GLFW_MOD_SHIFT, WINDOW_DRAG_PAN},
+      {450, GLFW_MOD_CONTROL, WINDOW_DRAG_WATER},
+      {400, 0, WINDOW_DRAG_BODY}, // the ball in it
+      {400, GLFW_MOD_ALT, WINDOW_DRAG_ORBIT},
+      {700, 0, WINDOW_DRAG_ORBIT}, // beside it
+      {700, GLFW_MOD_ALT, WINDOW_DRAG_LEAN},
+  };
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    WindowInput input = fresh();
+    input.container = glass;
+    input.bodies = (GrabBodies){1, &body, &def};
+    window_input_cursor(&input, rows[i].x, 300);
+    window_input_button(&input, GLFW_MOUSE_BUTTON_LEFT, rows[i].mods, true);
+    if (input.drag != rows[i].drag) fail_msg("row %zu: %d", i, (int)input.drag);
+  }
+}
+
 static void the_wheel_zooms(void **state) {
   (void)state;
   WindowInput input = fresh();
@@ -174,7 +222,7 @@ static void the_help_names_every_key_and_fits(void **state) {
   };
   for (size_t i = 0; i < sizeof said / sizeof said[0]; i++)
     if (said[i]) assert_non_null(strstr(text, said[i]));
-  assert_int_equal(lines, 16);
+  assert_int_equal(lines, 18);
   assert_true(columns + 2 <= HUD_COLUMNS);
   char small[40]; // cut, not overrun
   assert_int_equal(strlen(hud_help(small, sizeof small)), sizeof small - 1);
@@ -241,6 +289,8 @@ int main(void) {
       cmocka_unit_test(each_drag_moves_what_it_says),
       cmocka_unit_test(the_button_that_began_a_drag_ends_it),
       cmocka_unit_test(a_left_drag_on_a_draggable_body_moves_it),
+      cmocka_unit_test(a_drag_that_leans_follows_the_hand),
+      cmocka_unit_test(a_drag_that_begins_on_a_glass_leans_it),
       cmocka_unit_test(the_wheel_zooms),
       cmocka_unit_test(keys_do_what_the_help_says),
       cmocka_unit_test(nonsense_positions_are_passed_over),
