@@ -11,6 +11,7 @@ set_key() {
 }
 
 picture ripple ripple 100 --size 1280x800
+# shellcheck disable=SC2154
 ffmpeg -loglevel error -y -i "$parts/ripple.png" -q:v 3 "$FOLDER/heightfield_ripple.jpg"
 
 for frame in 80 90 100 110; do picture pool_$frame table_pool $frame --size 640x400; done
