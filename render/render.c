@@ -244,6 +244,11 @@ bool render_read_layer(Render *render, float *values, int32_t *channels) {
   *channels = render->layer->channels;
   if (values == NULL) return true;
   const GpuTexture *texture = render->shown;
+  if (texture->id == 0) { // there was nothing to make it of
+    const RenderPicture *picture = &render->picture;
+    memset(values, 0, sizeof *values * (size_t)*channels * (size_t)picture->width * (size_t)picture->height);
+    return true;
+  }
   const size_t count = (size_t)texture->width * (size_t)texture->height * (size_t)gpu_texture_channels(texture);
   float *texels = malloc(count * sizeof *texels);
   if (texels == NULL) return false;
