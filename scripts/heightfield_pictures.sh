@@ -10,28 +10,37 @@ set_key() {
   printf -- '--set render.heightfield.%s ' "$@"
 }
 
-picture ripple ripple 100 --size 1280x800
+# The scene ripple in clearer water, without the edges of its tank: they would cross what is to be seen.
+ripple() {
+  name=$1 frame=$2
+  shift 2
+  picture "$name" ripple "$frame" --set container.visible=false --set 'render.absorption=[1.1,0.25,0.18]' "$@"
+}
+
+ripple ripple 60 --size 1280x800 --camera 1.85,2.85,3.25,1.2,0.32,0.86
 # shellcheck disable=SC2154
 ffmpeg -loglevel error -y -i "$parts/ripple.png" -q:v 3 "$FOLDER/heightfield_ripple.jpg"
 
-for frame in 80 90 100 110; do picture pool_$frame table_pool $frame --size 640x400; done
-grid heightfield_table_pool.jpg 2 pool_80 pool_90 pool_100 pool_110
+for frame in 80 92 104 116; do
+  picture pool_$frame table_pool $frame --size 640x400 --camera 0.13,2.4,3.55,1.2,0.27,0.9
+done
+grid heightfield_table_pool.jpg 2 pool_80 pool_92 pool_104 pool_116
 
 # Figures 2 and 3 of the paper: an eye for every ray, one for each object and its picture stretched, one.
-near='--size 480x400 --camera 0.9,1.6,2.6,1.05,0.45,0.8'
 for eyes in each scaled one; do
-  # shellcheck disable=SC2046,SC2086
-  picture eyes_$eyes ripple 0 $near $(set_key eyes=$eyes) --set 'fluid.0.waves=[]'
+  # shellcheck disable=SC2046
+  ripple eyes_$eyes 0 --size 480x400 --camera 0.3,1.25,2.4,1.08,0.38,0.84 $(set_key eyes=$eyes) --set 'fluid.0.waves=[]'
 done
 grid heightfield_eyes.jpg 3 eyes_each eyes_scaled eyes_one
 
 # Figure 9: none, simple, traced, both.
-# shellcheck disable=SC2046
+# shellcheck disable=SC2046,SC2086
 {
-  picture caustics_none ripple 100 --size 640x400 $(set_key traced_caustics=false)
-  picture caustics_simple ripple 100 --size 640x400 $(set_key traced_caustics=false simple_caustics=true)
-  picture caustics_traced ripple 100 --size 640x400
-  picture caustics_both ripple 100 --size 640x400 $(set_key simple_caustics=true)
+  above='--size 640x400 --camera 0.9,2.3,2.0,1.15,0.3,0.8'
+  ripple caustics_none 100 $above $(set_key traced_caustics=false)
+  ripple caustics_simple 100 $above $(set_key traced_caustics=false simple_caustics=true)
+  ripple caustics_traced 100 $above
+  ripple caustics_both 100 $above $(set_key simple_caustics=true)
 }
 grid heightfield_caustics.jpg 2 caustics_none caustics_simple caustics_traced caustics_both
 
@@ -39,8 +48,8 @@ grid heightfield_caustics.jpg 2 caustics_none caustics_simple caustics_traced ca
 # shellcheck disable=SC2046,SC2086
 {
   near='--size 480x400 --camera 0.5,1.35,2.0,0.85,0.55,0.75'
-  picture line_pulled ripple 40 $near $(set_key access=direction)
-  picture line_free ripple 40 $near $(set_key access=direction pull_reach=0)
-  picture line_point ripple 40 $near
+  ripple line_pulled 40 $near $(set_key access=direction pull_reach=6)
+  ripple line_free 40 $near $(set_key access=direction pull_reach=0)
+  ripple line_point 40 $near
 }
 grid heightfield_waterline.jpg 3 line_pulled line_free line_point
