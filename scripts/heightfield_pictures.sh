@@ -22,16 +22,20 @@ ripple ripple 60 --size 1280x800 --camera 1.85,2.85,3.25,1.2,0.32,0.86
 ffmpeg -loglevel error -y -i "$parts/ripple.png" -q:v 3 "$FOLDER/heightfield_ripple.jpg"
 
 for frame in 80 92 104 116; do
-  picture pool_$frame table_pool $frame --size 640x400 --camera 0.13,2.4,3.55,1.2,0.27,0.9
+  picture pool_$frame table_pool $frame --size 640x360 --camera 0.23,2.4,3.55,1.35,0.21,0.9
 done
 grid heightfield_table_pool.jpg 2 pool_80 pool_92 pool_104 pool_116
 
-# Figures 2 and 3 of the paper: an eye for every ray, one for each object and its picture stretched, one.
+# Figures 2 and 3 of the paper: an eye for every ray, one for each object and its picture stretched, one. By direction there is
+# a difference on waves only.
+eyes_view='--size 640x400 --camera 0.6,1.25,1.9,1.08,0.44,0.72'
 for eyes in each scaled one; do
-  # shellcheck disable=SC2046
-  ripple eyes_$eyes 0 --size 480x400 --camera 0.3,1.25,2.4,1.08,0.38,0.84 $(set_key eyes=$eyes) --set 'fluid.0.waves=[]'
+  # shellcheck disable=SC2046,SC2086
+  ripple eyes_$eyes 0 $eyes_view $(set_key eyes=$eyes) --set 'fluid.0.waves=[]'
 done
-grid heightfield_eyes.jpg 3 eyes_each eyes_scaled eyes_one
+# shellcheck disable=SC2046,SC2086
+ripple eyes_direction 40 $eyes_view $(set_key access=direction)
+grid heightfield_eyes.jpg 2 eyes_each eyes_scaled eyes_one eyes_direction
 
 # Figure 9: none, simple, traced, both.
 # shellcheck disable=SC2046,SC2086
