@@ -281,6 +281,10 @@ bool render_caustics_draw(RenderCaustics *caustics, RenderPicture *picture, cons
 
 // ---- For the shaders -------------------------------------------------------------------------------------------------
 
+const char *render_caustics_defines(const RenderCaustics *caustics) {
+  return caustics->drawn ? "#define POOL 1\n" : "#define POOL 1\n#define UNTRACED 1\n";
+}
+
 RenderCausticsBlock render_caustics_block(const RenderCaustics *caustics, const RenderPicture *picture) {
   const RenderHeightfield *settings = &picture->settings->heightfield;
   const SimFrame *frame = picture->frame;
@@ -289,7 +293,6 @@ RenderCausticsBlock render_caustics_block(const RenderCaustics *caustics, const 
   memcpy(block.u, caustics->u, sizeof block.u);
   memcpy(block.v, caustics->v, sizeof block.v);
   memcpy(block.way, caustics->way, sizeof caustics->way);
-  block.way[3] = caustics->drawn;
   if (frame->has_container && frame->container.shape == SIM_CONTAINER_GLASS) {
     const float *min = frame->container.min, *max = frame->container.max;
     block.walls[0] = 0.5f * (min[0] + max[0]);

@@ -30,10 +30,13 @@ bool render_caustics_draw(RenderCaustics *caustics, RenderPicture *picture, cons
                           RenderError *error);
 void render_caustics_destroy(RenderCaustics *caustics);
 
+/// Definitions for shaders of what lies in the water, after the map was drawn: POOL, and UNTRACED when it was not.
+const char *render_caustics_defines(const RenderCaustics *caustics);
+
 /// What pool_light.glsl has of it, in the block of pool.glsl.
 typedef struct RenderCausticsBlock {
   float u[4], v[4];
-  float way[4];    // –; 1 when there is a light map
+  float way[4];    // –
   float simple[4]; // a, b, c of Eq. 4; 1 when it is on
   float walls[4];  // middle (x, z) of a round container, radius at which the water is mirrored, m; radius 0: at the
                    // field's border; level_light

@@ -9,7 +9,7 @@
 // struct WaterObject of pool.glsl, std430
 typedef struct ObjectBlock {
   float plane[4], low[4], high[4], middle[4];
-  float eye_reflected[4], eye_refracted[4], a[4], b[4], seen_b[4];
+  float eye_refracted[4], a[4], seen_b[4], unscaled_b[4];
 } ObjectBlock;
 
 // struct Pool of pool.glsl, std430
@@ -29,14 +29,13 @@ static void set4(float out[4], const float v[3], float w) {
 static ObjectBlock object_block(const RenderWaterObject *object) {
   ObjectBlock block = {{0}};
   memcpy(block.plane, object->plane, sizeof block.plane);
-  set4(block.low, object->axis[0], object->crosses);
+  set4(block.low, object->axis[0], 0);
   set4(block.high, object->axis[1], object->half_width > 1e-6f ? object->half_width : 1e-6f);
   set4(block.middle, object->middle, 0);
-  set4(block.eye_reflected, object->eye_reflected, 0);
   set4(block.eye_refracted, object->eye_refracted, 0);
   set4(block.a, object->a, 0);
-  set4(block.b, object->b, 0);
   set4(block.seen_b, object->seen_b, 0);
+  set4(block.unscaled_b, object->unscaled_b, 0);
   return block;
 }
 

@@ -104,8 +104,8 @@ static bool draw_sides(Heightfield *s, RenderPicture *picture, const RenderSurfa
   const int32_t glass_pieces = 96;
   char defines[sizeof picture->defines + 256];
   const int used = render_scene_defines(picture, defines, sizeof defines);
-  snprintf(defines + used, sizeof defines - (size_t)used, "%s#define SIDES 1\n#define POOL 1\n",
-           render_container_define(frame));
+  snprintf(defines + used, sizeof defines - (size_t)used, "%s%s#define SIDES 1\n", render_container_define(frame),
+           render_caustics_defines(&s->caustics));
   const GpuProgramDesc desc = {"heightfield: sides", "heightfield_surface.glsl", defines};
   if (!gpu_program_prepare(&s->wall_program, &desc, error)) return false;
   const RenderBodyEnds ends = render_body_ends(picture);
@@ -169,8 +169,9 @@ static bool draw_light(Heightfield *s, RenderPicture *picture, GpuProgram *progr
   const RenderHeightfield *settings = &picture->settings->heightfield;
   char defines[sizeof picture->defines + 512];
   const int used = render_scene_defines(picture, defines, sizeof defines);
-  snprintf(defines + used, sizeof defines - (size_t)used, "%s#define POOL 1\n#define %s 1\n%s%s%s%s%s",
-           render_container_define(picture->frame), pixels, mapped ? "#define MAPPED 1\n" : "#define ROOF 1\n",
+  snprintf(defines + used, sizeof defines - (size_t)used, "%s%s#define %s 1\n%s%s%s%s%s",
+           render_container_define(picture->frame), render_caustics_defines(&s->caustics), pixels,
+           mapped ? "#define MAPPED 1\n" : "#define ROOF 1\n",
            mapped && !s->pool.surroundings ? "#undef BODIES\n" : "", // all of them are in the maps
            settings->trapezium ? "#define TRAPEZIUM 1\n" : "",
            settings->access == RENDER_ACCESS_DIRECTION ? "#define ACCESS_DIRECTION 1\n" : "",
@@ -196,8 +197,8 @@ static bool draw_light(Heightfield *s, RenderPicture *picture, GpuProgram *progr
 }
 
 static bool draw_maps(Heightfield *s, RenderPicture *picture, RenderError *error) {
-  char defines[sizeof picture->defines + 32];
-  snprintf(defines, sizeof defines, "%s#define POOL 1\n", picture->defines);
+  char defines[sizeof picture->defines + 64];
+  snprintf(defines, sizeof defines, "%s%s", picture->defines, render_caustics_defines(&s->caustics));
   return render_object_maps_draw(&s->object_maps, picture, &s->pool, light_inputs(s, picture), defines, error);
 }
 

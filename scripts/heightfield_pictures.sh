@@ -10,11 +10,11 @@ set_key() {
   printf -- '--set render.heightfield.%s ' "$@"
 }
 
-# The scene ripple in clearer water, without the edges of its tank: they would cross what is to be seen.
+# The scene ripple without the edges of its tank: they would cross what is to be seen.
 ripple() {
   name=$1 frame=$2
   shift 2
-  picture "$name" ripple "$frame" --set container.visible=false --set 'render.absorption=[1.1,0.25,0.18]' "$@"
+  picture "$name" ripple "$frame" --set container.visible=false "$@"
 }
 
 ripple ripple 60 --size 1280x800 --camera 1.85,2.85,3.25,1.2,0.32,0.86

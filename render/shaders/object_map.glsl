@@ -22,9 +22,7 @@ vec2 map_place(vec2 place) {
 
 // In shares of the way from a, along the line from there to where the object's lowest point is seen.
 vec4 stretch_of(WaterObject object) {
-  float over = height_over(object.plane, object.eye_refracted.xyz), under = -height_over(object.plane, object.b.xyz);
-  vec3 shown = mix(object.eye_refracted.xyz, object.b.xyz, over / max(over + under, 1e-9)) - object.a.xyz;
-  vec3 seen = object.seen_b.xyz - object.a.xyz;
+  vec3 shown = object.unscaled_b.xyz - object.a.xyz, seen = object.seen_b.xyz - object.a.xyz;
   float far = dot(seen, seen);
   return far > 1e-12 ? vec4(seen * inversesqrt(far), dot(shown, seen) / far - 1.0) : vec4(0.0);
 }
@@ -65,7 +63,10 @@ void main() {
   vec2 margin = 0.1 * (high - low) + 4.0 / lens.zw;
   low -= margin;
   high += margin;
-  if (in_front < eye.w || EYES > 0) {
+#if EYES > 0 && !defined(REFLECTED)
+  in_front = 0.0;
+#endif
+  if (in_front < eye.w) {
     low = vec2(-2.0);
     high = vec2(2.0);
   }
@@ -81,18 +82,6 @@ flat in ivec2 which;
 flat in vec4 stretch;
 layout(location = 0) out vec4 colour;   // linear light, 1
 layout(location = 1) out float way;     // m from the plane along the ray
-
-#if SHAPE == 0
-#define MEET meet_box
-#elif SHAPE == 1
-#define MEET meet_sphere
-#elif SHAPE == 2
-#define MEET meet_cylinder
-#elif SHAPE == 3
-#define MEET meet_capsule
-#elif SHAPE == 4
-#define MEET meet_stairs
-#endif
 
 // The ray that a texel stands for: from the plane on, a unit direction.
 bool ray_of_texel(WaterObject object, out vec3 origin, out vec3 direction) {

@@ -34,18 +34,6 @@ void main() {
 #include "solids.glsl"
 flat in int index;
 
-#if SHAPE == 0
-#define MEET meet_box
-#elif SHAPE == 1
-#define MEET meet_sphere
-#elif SHAPE == 2
-#define MEET meet_cylinder
-#elif SHAPE == 3
-#define MEET meet_capsule
-#elif SHAPE == 4
-#define MEET meet_stairs
-#endif
-
 vec2 meet_world(vec3 origin, vec3 ray, float from, out vec3 normal) {
   Body body = bodies[index];
   vec4 back = vec4(-body.rotation.xyz, body.rotation.w);

@@ -1,12 +1,11 @@
 // What the passes of the style "heightfield" know about the water and about what stands in it: struct Pool of object_maps.c.
 struct WaterObject {
   vec4 plane;           // the surface around it: unit normal upwards; dot(normal, p) + w is a point's height over it
-  vec4 low, high;       // ends of its main axis, m; 1 when it stands in the surface; half its width there, m
+  vec4 low, high;       // ends of its main axis, m; –, half its width at the plane, m
   vec4 middle;          // of that width, on the plane, m; –
-  vec4 eye_reflected;   // Eq. 1
   vec4 eye_refracted;   // Eq. 2
   vec4 a;               // the point of plane and object nearest to the eye
-  vec4 b, seen_b;       // its lowest point, and where on the plane the eye sees it (b'_real of Figure 3)
+  vec4 seen_b, unscaled_b; // where on the plane the eye sees its lowest point, and that one eye shows it (b'_real, b' of Figure 3)
 };
 
 layout(std430, binding = 6) readonly buffer Pool {
@@ -14,7 +13,7 @@ layout(std430, binding = 6) readonly buffer Pool {
   vec4 height_range;    // lowest and highest water, m; metres between texels; –
   vec4 height_slope;    // mean slopes along x and z; –
   vec4 caustic_u, caustic_v; // place in the maps of light and solids
-  vec4 caustic_way;     // unit, the refracted sunlight, downwards; 1 when there is a map of light
+  vec4 caustic_way;     // unit, the refracted sunlight, downwards; –
   vec4 caustic_simple;  // a, b, c of Eq. 4; 1 when it is on
   vec4 caustic_walls;   // middle (x, z) of a round container, radius at which the water is mirrored, m; radius 0: at the field's
                         // border; the refracted sunlight below level water, across it, in that of the sun

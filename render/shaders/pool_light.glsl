@@ -43,7 +43,12 @@ void into_pool(vec3 p, vec3 normal, inout SunLight light) {
   vec4 surface = surface_beyond(p.xz - way.xz * ((height - p.y) / -way.y), height_place, height_slope, caustic_walls);
   float share = surface.y;
   vec2 place = vec2(dot(p, caustic_u.xyz) + caustic_u.w, dot(p, caustic_v.xyz) + caustic_v.w);
-  vec3 sun = caustic_way.w > 0.0 ? textureLod(caustic_light, place, 0.0).rgb : vec3(share * caustic_walls.w);
+#ifdef UNTRACED
+  vec2 entry = p.xz - way.xz * ((surface.x - p.y) / -way.y);
+  vec3 sun = vec3(share * caustic_walls.w * sun_past_solids(vec3(entry.x, surface.x, entry.y)));
+#else
+  vec3 sun = textureLod(caustic_light, place, 0.0).rgb;
+#endif
   float path = max(surface.x - max(p.y, min(container_min.y, surface.x)), 0.0) / -way.y;
   vec3 left = exp(-(absorption.rgb + scattering.rgb) * path);
   light.direct = sun * left * caustic_past_solids(p, normal) + light.direct * (1.0 - share);

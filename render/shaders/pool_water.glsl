@@ -36,11 +36,11 @@ float surface_ahead(vec3 p, vec3 way, float end) {
 }
 #endif
 
-// What a ray in the water ends at: a solid, or, out through a wall or (ROOF) the surface, the scene out there. Where it cannot
-// come out it is mirrored. `path`: metres from the eye; `metres`: of water.
+// What a ray in the water ends at: a solid, or, out through a wall or (ROOF) the surface, the scene out there. Where more of it is
+// mirrored than comes out, it is mirrored: one way is followed for all of it. `path`: metres from the eye; `metres`: of water.
 vec3 light_in_water(vec3 p, vec3 way, float path, out float metres) {
   const int LEGS = 4;
-  float index = optics.x, share = 1.0;
+  float index = optics.x;
   bool wet = true;
   metres = 0.0;
   vec3 light = vec3(0.0);
@@ -62,10 +62,9 @@ vec3 light_in_water(vec3 p, vec3 way, float path, out float metres) {
 #endif
     normal = dot(normal, way) > 0.0 ? normal : -normal;
     vec3 out_there = refract(way, -normal, index);
-    wet = out_there == vec3(0.0);
-    share *= wet ? 1.0 : 1.0 - fresnel(dot(way, normal), 1.0 / index);
+    wet = fresnel(dot(way, normal), 1.0 / index) > 0.5;
     way = wet ? reflect(way, normal) : out_there;
     p += way * (1e-4 * container_max.w);
   }
-  return light * share;
+  return light;
 }

@@ -90,3 +90,18 @@ vec2 meet_stairs(Body body, vec3 o, vec3 d, float from, out vec3 normal) {
   }
   return vec2(start + best, around.y);
 }
+
+// That of the one SHAPE of a program for each.
+#ifdef SHAPE
+#if SHAPE == 0
+#define MEET meet_box
+#elif SHAPE == 1
+#define MEET meet_sphere
+#elif SHAPE == 2
+#define MEET meet_cylinder
+#elif SHAPE == 3
+#define MEET meet_capsule
+#elif SHAPE == 4
+#define MEET meet_stairs
+#endif
+#endif

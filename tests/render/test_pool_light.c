@@ -94,7 +94,7 @@ static void light_points(Probe *p, const TestField *f, double height) {
   RenderError error = {0};
   char defines[512];
   free(field_bench_light(b, f));
-  snprintf(defines, sizeof defines, "%s#define POOL 1\n", b->picture.defines);
+  snprintf(defines, sizeof defines, "%s%s", b->picture.defines, render_caustics_defines(&b->caustics));
   const GpuProgramDesc desc = {.label = "probe", .file = "probe.glsl", .defines = defines, .sources = p->sources};
   if (!gpu_program_prepare(&p->program, &desc, &error)) fail_msg("%s", error.message);
   struct {
@@ -260,6 +260,46 @@ static void test_shadow_of_ball(void **state) {
   test_field_destroy(&f);
 }
 
+// A ball over the water darkens what its shadow on the surface lets no light down to, with and without a map of light.
+static void test_shadow_from_above(void **state) {
+  Probe *p = *state;
+  FieldBench *b = p->bench;
+  const double dry = 1e9, radius = 0.15, height = 1.4;
+  const SimObstacle ball = {
+      .shape = SIM_SPHERE, .size = {2 * (float)radius}, .position = {1, (float)height, 1}, .rotation = {0, 0, 0, 1}};
+  TestField f = test_field_create(NODES, NODES, SPACING, 0, 0, level_height, &dry);
+  for (int traced = 0; traced < 2; ++traced) {
+    reset(b);
+    b->settings.heightfield.traced_caustics = traced;
+    b->frame.obstacle_count = 1;
+    b->frame.obstacles = &ball;
+    light_points(p, &f, 0);
+    const float *way = b->caustics.way, *sun = b->picture.block.sun_direction;
+    int dark = 0, lit = 0;
+    for (int k = 0; k < ACROSS * ACROSS; ++k) {
+      const double x = place(k % ACROSS), z = place(k / ACROSS);
+      if (!inside(x, z, 0.01)) continue;
+      // Back to where the light came through the surface, and on towards the sun.
+      const double back = LEVEL / (double)way[1],
+                   from[3] = {x + back * (double)way[0], LEVEL, z + back * (double)way[2]};
+      const double to[3] = {1 - from[0], height - from[1], 1 - from[2]};
+      double along = 0, far = 0;
+      for (int c = 0; c < 3; ++c) along += to[c] * (double)sun[c];
+      for (int c = 0; c < 3; ++c) far += pow(to[c] - along * (double)sun[c], 2);
+      if (sqrt(far) < radius - 0.04) {
+        assert_true(p->values[0][4 * k] < 0.02f);
+        ++dark;
+      }
+      if (sqrt(far) > radius + 0.04) {
+        expect_wet(p, k, LEVEL, 0.02);
+        ++lit;
+      }
+    }
+    assert_true(dark > 20 && lit > 1000);
+  }
+  test_field_destroy(&f);
+}
+
 // ---- Simple caustics -------------------------------------------------------------------------------------------------
 
 static void test_simple_caustics(void **state) {
@@ -332,8 +372,8 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_no_sun),          cmocka_unit_test(test_level_water),
       cmocka_unit_test(test_round_container), cmocka_unit_test(test_half_dry),
-      cmocka_unit_test(test_shadow_of_ball),  cmocka_unit_test(test_simple_caustics),
-      cmocka_unit_test(test_simple_slope),
+      cmocka_unit_test(test_shadow_of_ball),  cmocka_unit_test(test_shadow_from_above),
+      cmocka_unit_test(test_simple_caustics), cmocka_unit_test(test_simple_slope),
   };
   return cmocka_run_group_tests(tests, open_probe, close_probe);
 }
