@@ -22,7 +22,7 @@ struct SimFrameBuffer {
   uint32_t *id;
   float *position, *velocity, *density, *colour, *radius;
   uint8_t *particle_class, *near_surface, *exposed;
-  float *smoothed, *ellipsoid, *height, *normal;
+  float *smoothed, *ellipsoid, *height, *normal, *underside, *second;
   uint8_t *node_state; ///< of the height field, to fill it with
   int32_t *node_queue;
   SimObstacle *obstacles;
@@ -36,12 +36,12 @@ void sim_frame_buffer_destroy(SimFrameBuffer *buffer) {
   if (!buffer) return;
   sim_grid_free(&buffer->sort);
   sim_neighbours_free(&buffer->lists);
-  void *blocks[] = {buffer->axis[0],      buffer->axis[1], buffer->axis[2],   buffer->four,
-                    buffer->cell_start,   buffer->id,      buffer->position,  buffer->velocity,
-                    buffer->density,      buffer->colour,  buffer->radius,    buffer->particle_class,
-                    buffer->near_surface, buffer->exposed, buffer->smoothed,  buffer->ellipsoid,
-                    buffer->height,       buffer->normal,  buffer->obstacles, buffer->node_state,
-                    buffer->node_queue};
+  void *blocks[] = {buffer->axis[0],      buffer->axis[1],   buffer->axis[2],   buffer->four,
+                    buffer->cell_start,   buffer->id,        buffer->position,  buffer->velocity,
+                    buffer->density,      buffer->colour,    buffer->radius,    buffer->particle_class,
+                    buffer->near_surface, buffer->exposed,   buffer->smoothed,  buffer->ellipsoid,
+                    buffer->height,       buffer->normal,    buffer->obstacles, buffer->node_state,
+                    buffer->node_queue,   buffer->underside, buffer->second};
   for (size_t k = 0; k < sizeof blocks / sizeof *blocks; k++) sim_release(blocks[k]);
   sim_release(buffer);
 }
@@ -109,21 +109,32 @@ static void lap(SimProfile *profile, SimStage stage, double *since) {
   *since = now;
 }
 
-static bool height_field(SimFrameBuffer *buffer, const SimSurface *surface, SimError *error) {
+static bool height_field(SimFrameBuffer *buffer, const SimSurface *surface, bool layers, SimError *error) {
   SimHeightField *field = &buffer->frame.height_field;
   size_t nodes = (size_t)sim_surface_height_nodes(surface, field);
   if (!reserve_floats(&buffer->height, nodes) || !reserve_floats(&buffer->normal, 3 * nodes) ||
+      (layers && (!reserve_floats(&buffer->underside, nodes) || !reserve_floats(&buffer->second, nodes))) ||
       (surface->body_count > 0 && (!sim_reserve((void **)&buffer->node_state, nodes, 1) ||
                                    !sim_reserve((void **)&buffer->node_queue, nodes, sizeof(int32_t)))))
     return sim_fail(error, "out of memory");
-  if (surface->ripple)
-    sim_ripple_heights(surface->ripple, surface->container, field, buffer->frame.container.min[1], surface->threads,
-                       buffer->height, buffer->normal);
-  else
-    sim_surface_heightfield(surface, buffer->frame.container.min[1], field,
-                            &(SimHeightArrays){buffer->height, buffer->normal, buffer->node_state, buffer->node_queue});
+  float floor = buffer->frame.container.min[1];
+  SimHeightArrays arrays = {.height = buffer->height,
+                            .normal = buffer->normal,
+                            .underside = layers ? buffer->underside : NULL,
+                            .second = layers ? buffer->second : NULL,
+                            .state = buffer->node_state,
+                            .queue = buffer->node_queue};
+  if (surface->ripple) { // waves that never hang over
+    sim_ripple_heights(surface->ripple, surface->container, field, floor, surface->threads, buffer->height,
+                       buffer->normal);
+    for (size_t node = 0; layers && node < nodes; node++) buffer->underside[node] = buffer->second[node] = floor;
+  } else {
+    sim_surface_heightfield(surface, floor, field, &arrays);
+  }
   field->height = buffer->height;
   field->normal = buffer->normal;
+  field->underside = arrays.underside;
+  field->second = arrays.second;
   return true;
 }
 
@@ -139,7 +150,7 @@ static bool run_surface_stages(SimFrameBuffer *buffer, const SimSurface *surface
   frame->smoothed = anisotropy ? buffer->smoothed : NULL;
   frame->ellipsoid = anisotropy ? buffer->ellipsoid : NULL;
   frame->near_surface = flags ? buffer->near_surface : NULL;
-  frame->height_field = (SimHeightField){{0, 0}, {0, 0}, 0, NULL, NULL};
+  frame->height_field = (SimHeightField){.spacing = 0};
   if (density || anisotropy || flags || (classes && !has_class)) {
     sim_surface_sweep(surface, &(SimSurfaceSums){.density = density,
                                                  .particle_class = classes ? buffer->particle_class : NULL,
@@ -157,8 +168,8 @@ static bool run_surface_stages(SimFrameBuffer *buffer, const SimSurface *surface
     sim_surface_flags(surface, buffer->exposed, buffer->near_surface);
     lap(profile, SIM_STAGE_flags, &since);
   }
-  if (needs & SIM_NEED_HEIGHT_FIELD) {
-    if (!height_field(buffer, surface, error)) return false;
+  if (needs & (SIM_NEED_HEIGHT_FIELD | SIM_NEED_SECOND_LAYER)) {
+    if (!height_field(buffer, surface, needs & SIM_NEED_SECOND_LAYER, error)) return false;
     lap(profile, SIM_STAGE_height_field, &since);
   }
   return true;
@@ -340,7 +351,7 @@ static bool needs_lists(unsigned needs, bool has_class) {
 }
 
 static bool needs_order(unsigned needs, bool has_class) {
-  return needs_lists(needs, has_class) || needs & SIM_NEED_HEIGHT_FIELD;
+  return needs_lists(needs, has_class) || needs & (SIM_NEED_HEIGHT_FIELD | SIM_NEED_SECOND_LAYER);
 }
 
 static bool check_set(const SimParticleSet *set, SimError *error) {

@@ -22,7 +22,8 @@ typedef enum SimNeed {
   SIM_NEED_SURFACE = 1 << 2,     ///< near_surface
   SIM_NEED_HEIGHT_FIELD = 1 << 3,///< height_field
   SIM_NEED_DENSITY = 1 << 4,     ///< density: a world's frame has it anyway
-  SIM_NEED_ALL = (1 << 5) - 1
+  SIM_NEED_SECOND_LAYER = 1 << 5,///< height_field, with its underside and second
+  SIM_NEED_ALL = (1 << 6) - 1
 } SimNeed;
 
 /// Class of a particle. A particle file may bring its own; it is then used as it is.
@@ -46,12 +47,19 @@ typedef struct SimGrid {
 /// mirror images of the water inside, so that cells on the rim are whole, and farther out there is no water. Without a
 /// container they span the particles and two or three spacings around. Where an obstacle stands in the water, the surface goes
 /// on through it. One that lies just under the surface leaves it as the water above says.
+///
+/// Where water hangs over: in a wave that breaks, under a jet, on a table, there may be a second layer. A column's layers are found
+/// from above: the water at `height` ends in `underside`, if an obstacle-free stretch of air of a spacing or more is below; the next
+/// water below it begins at `second`. What comes after counts as water down to the floor.
 typedef struct SimHeightField {
   int32_t size[2];             ///< number of nodes along x and z; 0 when it was not asked for
   float origin[2];             ///< m, x and z of node (0, 0)
   float spacing;               ///< m, between neighbouring nodes
   const float *height;         ///< m, (size[1], size[0]); container.min[1], the lowest y, where there is no water
   const float *normal;         ///< unit, (size[1], size[0], 3); (0, 1, 0) where there is no water
+  const float *underside;      ///< m, (size[1], size[0]): lower end of the water at `height`; container.min[1] where no air is
+                               ///< below. NULL unless the second layer was asked for, as is `second`
+  const float *second;         ///< m, (size[1], size[0]): surface of the water below that air; container.min[1] where there is none
 } SimHeightField;
 
 typedef enum SimShape {

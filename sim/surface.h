@@ -87,10 +87,10 @@ int64_t sim_surface_height_nodes(const SimSurface *surface, SimHeightField *fiel
 /// m, x and z of the middle of a glass. Returns its radius; 0: the container is a box, or there is none.
 float sim_height_glass(const SimContainer *container, float axis[2]);
 
-/// Where a height field is written, and room to work in: one element a node (`normal`: three). The last two are needed where
-/// there are bodies.
+/// Where a height field is written, and room to work in: one element a node (`normal`: three). `underside` and `second` are NULL
+/// where no second layer is wanted; the last two are needed where there are bodies.
 typedef struct SimHeightArrays {
-  float *height, *normal;
+  float *height, *normal, *underside, *second;
   uint8_t *state;
   int32_t *queue;
 } SimHeightArrays;
@@ -107,7 +107,7 @@ typedef struct SimHeightContext {
   const SimContainer *walls;      ///< the mirrors; NULL: none
   float axis[2], glass;           ///< m, x and z of the middle and radius of a round glass; 0: it is a box
   const SimBoundary *solids;      ///< bodies, and a wall for the water that φ is a sum over; NULL: none
-  float *height, *normal;
+  float *height, *normal, *underside, *second; ///< as in SimHeightArrays
 } SimHeightContext;
 
 /// Whether a node lies outside a glass, farther than those that a cell on its rim needs.

@@ -159,6 +159,14 @@ static int32_t first_ring(Fill *fill, int32_t *queue) {
   return end;
 }
 
+// Water that an obstacle hides has no air below it that anybody knows of.
+static void fill_node(const Fill *fill, int32_t node) {
+  const SimHeightContext *c = fill->context;
+  float height = filled(fill, node);
+  if (c->underside && height > c->height[node]) c->underside[node] = c->second[node] = c->floor;
+  c->height[node] = height;
+}
+
 void sim_surface_height_fill(const SimHeightContext *context, const SimHeightArrays *arrays) {
   const SimSurface *surface = context->surface;
   const SimHeightField *f = context->field;
@@ -173,7 +181,7 @@ void sim_surface_height_fill(const SimHeightContext *context, const SimHeightArr
   while (begin < end) {
     // A ring reads only what was known before it, and is known when all of it is filled.
     int32_t ring = end;
-    for (int32_t n = begin; n < ring; n++) context->height[queue[n]] = filled(&fill, queue[n]);
+    for (int32_t n = begin; n < ring; n++) fill_node(&fill, queue[n]);
     for (int32_t n = begin; n < ring; n++) fill.state[queue[n]] = KNOWN;
     for (; begin < ring; begin++) end = enqueue(&fill, queue[begin], queue, end);
   }

@@ -143,7 +143,9 @@ void sim_surface_heightfield(const SimSurface *surface, float floor_height, cons
                               .floor = floor_height,
                               .walls = surface->container,
                               .height = arrays->height,
-                              .normal = arrays->normal};
+                              .normal = arrays->normal,
+                              .underside = arrays->underside,
+                              .second = arrays->second};
   context.glass = sim_height_glass(surface->container, context.axis);
   if (surface->body_count > 0) {
     solids =

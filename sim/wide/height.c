@@ -215,9 +215,9 @@ static float potential(Column *column, float height, float top) {
   return c->walls && height - c->floor < c->radius ? sum + potential_at(column, 2 * c->floor - height) : sum;
 }
 
-// The share of φ's water that bodies displace at a point: of the half ball below it, since the water ends there. A
+// The share of φ's water that bodies displace at a point. `below`: of the half ball below it, since the water ends there; a
 // gradient downwards says that the solid lies in that half altogether, one upwards that it lies in the other one.
-static float displaced_at(const Column *column, const float point[3]) {
+static float displaced_at(const Column *column, const float point[3], bool below) {
   const SimBoundary *solids = column->context->solids;
   float sum = 0;
   bool all = column->near->count < 0;
@@ -229,7 +229,7 @@ static float displaced_at(const Column *column, const float point[3]) {
     if (!(dx * dx + dy * dy + dz * dz < reach * reach)) continue;
     float g[3], share = sim_body_solid(body, &solids->wall, point, g);
     float length = sqrtf(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
-    sum += length > 0 ? share * (1 - g[1] / length) : share;
+    sum += below && length > 0 ? share * (1 - g[1] / length) : share;
   }
   return sum;
 }
@@ -250,7 +250,7 @@ static float iso_at(Column *column, float height, float top) {
   float iso = column->iso, displaced = 0;
   if (column->rim) iso = sim_smaller(iso, column->context->iso * measured(column, height, top));
   for (int32_t n = 0; column->near && n < column->images; n++)
-    displaced += displaced_at(column, (const float[3]){column->image[n].x, height, column->image[n].z});
+    displaced += displaced_at(column, (const float[3]){column->image[n].x, height, column->image[n].z}, true);
   iso = sim_smaller(iso, column->context->iso * (1 - displaced));
   return sim_larger(iso, column->context->iso * (1 - MOST_DISPLACED));
 }
@@ -292,9 +292,10 @@ static double highest_below(Column *column, double below) {
   return best;
 }
 
-// Where φ is the iso-value; `at_low` (not negative) and `at_high` (negative) are what φ is above it at both ends.
+// Where φ is the iso-value between two heights, the water's end (`low`, below the other one or above it) and the air's; `at_low` (not
+// negative) and `at_high` (negative) are what φ is above it there.
 static float crossing(Column *column, float low, float high, float at_low, float at_high) {
-  float top = high;
+  float top = sim_larger(low, high);
   int side = 0; // of the end that was moved last
   for (int n = 0; n < REFINEMENTS; n++) {
     float middle = low + (high - low) * (at_low / (at_low - at_high));
@@ -310,19 +311,87 @@ static float crossing(Column *column, float low, float high, float at_low, float
   return low + (high - low) * (at_low / (at_low - at_high));
 }
 
-// Samples lie at multiples of the step; stretches without water are skipped, however tall.
-static float column_height(Column *column) {
-  const SimHeightContext *c = column->context;
-  double base = (double)c->floor, step = (double)c->step, top = (double)c->surface->bounds_max[1] + (double)c->radius;
-  float above = 0; // φ of the sample above
-  for (double k = ceil((top - base) / step); k >= 0; k--) {
-    float low = (float)(base + step * k), high = (float)(base + step * (k + 1)), value = potential(column, low, high);
-    if (value >= (1 - MOST_DISPLACED) * c->iso && value >= iso_at(column, low, high))
-      return crossing(column, low, high, value - iso_at(column, low, high), above - iso_at(column, high, high));
-    if (value == 0) k = fmin(k, floor((highest_below(column, base + step * k) - base) / step) + 1);
+// Samples lie at multiples of the step over the floor, numbered from there.
+static float sample_height(const Column *column, double k) {
+  return (float)((double)column->context->floor + (double)column->context->step * k);
+}
+
+// What φ is above the iso-value in a sample, exact where it is not negative; what is more than that is not asked of bodies.
+static float sample(Column *column, double k, float *value) {
+  float height = sample_height(column, k), top = sample_height(column, k + 1);
+  *value = potential(column, height, top);
+  float least = (1 - MOST_DISPLACED) * column->context->iso;
+  return *value < least ? *value - least : *value - iso_at(column, height, top);
+}
+
+// The next sample below one where φ is zero that may be none of its own: stretches without water are skipped, however tall.
+static double skip(Column *column, double k) {
+  double base = (double)column->context->floor, step = (double)column->context->step;
+  return fmin(k, floor((highest_below(column, base + step * k) - base) / step) + 1);
+}
+
+// The water's surface at or below the sample *k, above which φ is `above`; *k becomes that of its first sample with water, negative
+// where there is none.
+static float surface_below(Column *column, double *k, float above) {
+  for (; *k >= 0; --*k) {
+    float value, over = sample(column, *k, &value), high = sample_height(column, *k + 1);
+    if (over >= 0) return crossing(column, sample_height(column, *k), high, over, above - iso_at(column, high, high));
+    if (value == 0) *k = skip(column, *k);
     above = value;
   }
-  return c->floor;
+  return column->context->floor;
+}
+
+// The lower end of the water that has the sample *k; *k becomes that of the first sample without, negative where there is none.
+static float end_below(Column *column, double *k) {
+  float value, over = sample(column, *k, &value);
+  for (--*k; *k >= 0; --*k) {
+    float under = sample(column, *k, &value), high = sample_height(column, *k + 1), low = sample_height(column, *k);
+    if (value < (1 - MOST_DISPLACED) * column->context->iso) under = value - iso_at(column, low, high);
+    if (under < 0) return crossing(column, high, low, over, under);
+    over = under;
+  }
+  return column->context->floor;
+}
+
+// Is there a sample of air between two that no body is near?
+static bool open_air(const Column *column, double low, double high) {
+  if (!column->near) return low <= high;
+  for (double k = high; k >= low; k--) {
+    float displaced = 0;
+    for (int32_t n = 0; n < column->images; n++)
+      displaced += displaced_at(
+          column, (const float[3]){column->image[n].x, sample_height(column, k), column->image[n].z}, false);
+    if (displaced == 0) return true;
+  }
+  return false;
+}
+
+// The second layer of a column whose first sample with water is k: where obstacles fill the gap or it is narrow, what is below
+// belongs to the first one.
+static void second_layer(Column *column, double k, float *underside, float *second) {
+  const SimHeightContext *c = column->context;
+  *underside = *second = c->floor;
+  while (k >= 0) {
+    float end = end_below(column, &k), value;
+    if (k < 0) return;
+    double first = k;
+    sample(column, k, &value);
+    k--;
+    float next = surface_below(column, &k, value);
+    if (end - next < c->surface->spacing || !open_air(column, k + 1, first)) continue;
+    *underside = end, *second = next;
+    return;
+  }
+}
+
+// The layers of a node's column.
+static void fill_node(Column *column, int32_t node) {
+  const SimHeightContext *c = column->context;
+  double top = (double)c->surface->bounds_max[1] + (double)c->radius;
+  double k = ceil((top - (double)c->floor) / (double)c->step);
+  c->height[node] = surface_below(column, &k, 0);
+  if (c->underside) second_layer(column, k, &c->underside[node], &c->second[node]);
 }
 
 // The bodies in reach of the columns of some nodes.
@@ -349,9 +418,10 @@ void WIDE(sim_surface_heights)(int32_t begin, int32_t end, const void *context) 
     float x = f->origin[0] + f->spacing * (float)(node % f->size[0]);
     float z = f->origin[1] + f->spacing * (float)(node / f->size[0]);
     c->height[node] = c->floor;
+    if (c->underside) c->underside[node] = c->second[node] = c->floor;
     if (!sim_height_beyond(c, x, z)) {
       open_column(&column, c, any ? &near : NULL, x, z);
-      c->height[node] = column_height(&column);
+      fill_node(&column, node);
     }
   }
 }

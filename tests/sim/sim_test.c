@@ -59,6 +59,8 @@ uint64_t test_hash_surface(const SimFrame *frame, uint64_t hash) {
   hash = hash_bytes(hash, frame->smoothed, 3 * n * sizeof(float));
   hash = hash_bytes(hash, frame->ellipsoid, 6 * n * sizeof(float));
   hash = hash_bytes(hash, frame->height_field.height, nodes * sizeof(float));
+  hash = hash_bytes(hash, frame->height_field.underside, nodes * sizeof(float));
+  hash = hash_bytes(hash, frame->height_field.second, nodes * sizeof(float));
   return hash_bytes(hash, frame->height_field.normal, 3 * nodes * sizeof(float));
 }
 
