@@ -76,7 +76,7 @@ static unsigned prepare(void *self, int index) {
   Pictures *p = self;
   bench_look(&p->bench.scene, p->options, index, &p->bench.settings, &p->bench.view);
   snprintf(p->style, sizeof p->style, "%s", p->bench.settings.style);
-  return render_style_needs(p->bench.settings.style);
+  return render_style_needs(p->bench.settings.style, &p->bench.settings);
 }
 
 static bool draw_sizes(void *self, const SimFrame *frame, double simulated_ms, bool counted, AppError *error) {

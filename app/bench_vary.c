@@ -103,7 +103,7 @@ static unsigned prepare(void *self, int index) {
   for (int c = 0; c < m->count; c++) {
     Combination *combination = &m->combinations[c];
     bench_look(&combination->scene, m->options, index, &combination->settings, &combination->view);
-    needs |= render_style_needs(combination->settings.style);
+    needs |= render_style_needs(combination->settings.style, &combination->settings);
   }
   return needs;
 }

@@ -94,7 +94,8 @@ static bool simulate_frame(Bench *bench, int index, bool counted, const SimFrame
   sim_world_clear_profile(bench->world);
   double start = bench_now_ms();
   if (!bench_advance(bench, bench->world, index, error)) return false;
-  unsigned needs = bench->render ? render_style_needs(bench->settings.style) : SIM_NEED_ALL;
+  unsigned needs = SIM_NEED_ALL & ~(unsigned)SIM_NEED_SECOND_LAYER; // which is off by default
+  if (bench->render) needs = render_style_needs(bench->settings.style, &bench->settings);
   *frame = sim_world_frame(bench->world, needs, bench->buffer, &sim_error);
   if (!*frame) return app_fail(error, APP_FAILED, "%s", sim_error.message);
   double elapsed = bench_now_ms() - start;

@@ -118,7 +118,7 @@ static void draw_name(Job *job, const char *style) {
 static bool draw_styles(Job *job, AppError *error) {
   const Options *options = job->options;
   unsigned needs = 0;
-  for (int i = 0; i < options->style_count; i++) needs |= render_style_needs(options->styles[i]);
+  for (int i = 0; i < options->style_count; i++) needs |= render_style_needs(options->styles[i], source_settings(job->source));
   job->frame = source_frame(job->source, needs, error);
   if (!job->frame) return false;
   for (int i = 0; i < options->style_count; i++) {
@@ -133,7 +133,7 @@ static bool draw_styles(Job *job, AppError *error) {
 static bool draw(Job *job, AppError *error) {
   if (job->cell) return draw_styles(job, error);
   const char *style = source_settings(job->source)->style;
-  job->frame = source_frame(job->source, render_style_needs(style), error);
+  job->frame = source_frame(job->source, render_style_needs(style, source_settings(job->source)), error);
   if (!job->frame || !draw_style(job, style, error)) return false;
   if (job->kind != RECORD_PFM) render_read_rgb8(job->render, job->pixels);
   return true;

@@ -201,6 +201,7 @@ static RenderCartoon cartoon_settings(const SceneCartoon *scene) {
 static RenderHeightfield heightfield_settings(const SceneHeightfield *scene) {
   return (RenderHeightfield){.smoothing = scene->smoothing,
                              .drops = scene->drops,
+                             .second_layer = scene->second_layer,
                              .mapped = scene->mapped,
                              .eyes = (RenderVirtualEyes)scene->eyes,
                              .access = (RenderMapAccess)scene->access,

@@ -449,6 +449,8 @@
     "Standard deviation of the filter of the heights; 0: none.") \
   F(S, SWITCH,    drops,           "",         "",                 "true", \
     "Particles that fly above the surface are drawn as balls.") \
+  F(S, SWITCH,    second_layer,    "",         "",                 "false", \
+    "Water that hangs over air is a layer of its own; off: it is filled down to the floor.") \
   F(S, SWITCH,    mapped,          "",         "",                 "true", \
     "What stands in the water is seen through maps of it; off: rays meet its geometry.") \
   F(S, CHOICE,    eyes,            "",         "each | scaled | one", "\"each\"", \

@@ -1,5 +1,7 @@
 #include "render/drops.h"
 
+#include "render/overhang.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -33,7 +35,8 @@ bool render_is_drop(const SimFrame *frame, const SimHeightField *field, int32_t 
     if (!(fabsf(p[k]) < RENDER_FARTHEST)) return false;
   }
   if (field->size[0] <= 0) return true;
-  return p[1] > water_at(field, p[0], p[2]) + above * frame->particle_radius;
+  return p[1] > water_at(field, p[0], p[2]) + above * frame->particle_radius &&
+         !render_in_overhang(&frame->height_field, p, above * frame->particle_radius);
 }
 
 bool render_drops_find(RenderDrops *drops, const SimFrame *frame, const SimHeightField *field, RenderError *error) {

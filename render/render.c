@@ -103,13 +103,16 @@ bool render_resize(Render *render, int32_t width, int32_t height, RenderError *e
 
 // ---- Drawing ---------------------------------------------------------------------------------------------------------
 
-static bool check_needs(const RenderStyle *style, const SimFrame *frame, RenderError *error) {
+static bool check_needs(const RenderStyle *style, const RenderSettings *settings, const SimFrame *frame,
+                        RenderError *error) {
+  const unsigned needs = render_style_needs(style->name, settings);
   const char *missing = NULL;
   const bool any = frame->count > 0;
-  if ((style->needs & SIM_NEED_CLASS) && any && frame->particle_class == NULL) missing = "classes of particles";
-  if ((style->needs & SIM_NEED_ANISOTROPY) && any && frame->ellipsoid == NULL) missing = "ellipsoids";
-  if ((style->needs & SIM_NEED_SURFACE) && any && frame->near_surface == NULL) missing = "near-surface flags";
-  if ((style->needs & SIM_NEED_HEIGHT_FIELD) && frame->height_field.height == NULL) missing = "the height field";
+  if ((needs & SIM_NEED_CLASS) && any && frame->particle_class == NULL) missing = "classes of particles";
+  if ((needs & SIM_NEED_ANISOTROPY) && any && frame->ellipsoid == NULL) missing = "ellipsoids";
+  if ((needs & SIM_NEED_SURFACE) && any && frame->near_surface == NULL) missing = "near-surface flags";
+  if ((needs & SIM_NEED_HEIGHT_FIELD) && frame->height_field.height == NULL) missing = "the height field";
+  if ((needs & SIM_NEED_SECOND_LAYER) && frame->height_field.underside == NULL) missing = "the second layer";
   return missing == NULL || gpu_fail(error, "style \"%s\" needs %s, which the frame lacks", style->name, missing);
 }
 
@@ -180,7 +183,7 @@ bool render_draw(Render *render, const SimFrame *frame, const RenderView *view, 
   if (style == NULL) {
     return gpu_fail(error, "unknown style \"%.64s\"", settings->style != NULL ? settings->style : "");
   }
-  if (!check_needs(style, frame, error)) return false;
+  if (!check_needs(style, settings, frame, error)) return false;
   void *state = style_state(render, style, error);
   if (state == NULL) return false;
   render->style = style;

@@ -165,6 +165,8 @@ typedef enum RenderMapAccess {
 typedef struct RenderHeightfield {
   float smoothing;           ///< standard deviation of the filter of the heights, spacings, [0, 8], default 1
   bool drops;                ///< particles that fly above the surface are drawn as balls, default true
+  bool second_layer;         ///< water that hangs over air (a wave that breaks, a jet) is a layer of its own and needs
+                             ///< SIM_NEED_SECOND_LAYER; default false: it is filled down to the floor
   // objects
   bool mapped;               ///< objects are seen through maps of them (default); false: rays meet their geometry
   RenderVirtualEyes eyes;
@@ -266,7 +268,8 @@ void render_present(Render *render, int32_t window_width, int32_t window_height)
 int32_t render_style_count(void);
 const char *render_style_name(int32_t index);         ///< NULL when out of range
 const char *render_style_summary(int32_t index);      ///< one line: what it is, after whom
-unsigned render_style_needs(const char *style);       ///< SimNeed bits; 0 for an unknown style
+/// SimNeed bits, with those that only some settings need; NULL: the default settings. 0 for an unknown style.
+unsigned render_style_needs(const char *style, const RenderSettings *settings);
 bool render_style_exists(const char *style);
 
 /// A layer is an intermediate of the style: depth, normal … The background's own layers belong to every style.

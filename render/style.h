@@ -11,6 +11,7 @@ typedef struct RenderStyle {
   const char *name;
   const char *summary;       // one line: what it is, after whom
   unsigned needs;            // SimNeed bits: what draw reads from the frame beyond what is always there
+  unsigned (*needs_more)(const RenderSettings *settings); // SimNeed bits that only some settings need; may be NULL
   bool drawn;                // sky, floor and obstacles are drawn in flat colours as well (drawn.glsl)
   size_t state_size;         // bytes
   const RenderLayer *layers; // intermediates that can be shown and read

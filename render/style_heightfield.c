@@ -7,9 +7,11 @@
 //
 // Beyond the paper: plane water bends each ray of the pictures as it is, not as seen from one eye (RENDER_EYES_EACH); rays are
 // looked up in the point where they pass the object (RENDER_ACCESS_POINT); the water's flat sides behind the walls of a tank,
-// through which rays meet the geometry; an eye in the water; drops that fly above the surface.
+// through which rays meet the geometry; an eye in the water; a second layer where water hangs over air; drops that fly above the
+// surface.
 #include "render/drops.h"
 #include "render/object_maps.h"
+#include "render/overhang.h"
 #include "render/scene_rays.h"
 #include "render/style.h"
 
@@ -30,6 +32,7 @@ typedef struct Heightfield {
   GpuBuffer
       tiles[2]; // (rows, columns) uint32: 1 where the height field, or its flat sides, are in a tile of the picture
   GpuProgram light_program, wall_light_program, submerged_program;
+  RenderOverhang overhang;
   RenderDrops drops;
 } Heightfield;
 
@@ -72,6 +75,7 @@ static void heightfield_destroy(void *state) {
   render_caustics_destroy(&s->caustics);
   render_pool_destroy(&s->pool);
   render_object_maps_destroy(&s->object_maps);
+  render_overhang_destroy(&s->overhang);
   render_drops_destroy(&s->drops);
 }
 
@@ -204,10 +208,25 @@ static bool draw_maps(Heightfield *s, RenderPicture *picture, RenderError *error
 
 static bool find_water(Heightfield *s, RenderPicture *picture, RenderError *error) {
   const RenderHeightfield *settings = &picture->settings->heightfield;
-  const SimFrame *frame = picture->frame;
-  return render_water_objects_find(&s->objects, frame, picture->block.eye, settings,
+  SimFrame lowest = *picture->frame; // with the water that reaches down to the floor
+  if (settings->second_layer) {
+    if (!render_overhang_find(&s->overhang, picture->frame, settings->smoothing, error)) return false;
+    lowest.height_field.height = s->overhang.nodes;
+  }
+  return render_water_objects_find(&s->objects, &lowest, picture->block.eye, settings,
                                    picture->settings->refractive_index, error) &&
          render_height_map_draw(&s->map, picture, &s->objects.field, s->objects.heights, settings->smoothing, error);
+}
+
+static bool draw_overhang(Heightfield *s, RenderPicture *picture, RenderError *error) {
+  const RenderHeightfield *settings = &picture->settings->heightfield;
+  if (!settings->second_layer) return true;
+  char defines[sizeof picture->defines + 512];
+  const int used = render_scene_defines(picture, defines, sizeof defines);
+  snprintf(defines + used, sizeof defines - (size_t)used, "%s%s", render_container_define(picture->frame),
+           render_caustics_defines(&s->caustics));
+  return render_overhang_draw(&s->overhang, picture, &picture->frame->height_field, settings->smoothing,
+                              light_inputs(s, picture), defines, error);
 }
 
 static bool draw_drops(Heightfield *s, RenderPicture *picture, RenderError *error) {
@@ -268,16 +287,25 @@ static bool heightfield_draw(void *state, RenderPicture *picture, RenderError *e
        (!water || submerged || draw_light(s, picture, &s->wall_light_program, "SIDES", false, &s->tiles[1], error));
   gpu_pass_end(gpu);
 
+  gpu_pass_begin(gpu, "overhang");
+  ok = ok && (submerged || draw_overhang(s, picture, error));
+  gpu_pass_end(gpu);
+
   gpu_pass_begin(gpu, "drops");
   ok = ok && (submerged || draw_drops(s, picture, error));
   gpu_pass_end(gpu);
   return ok;
 }
 
+static unsigned needs_more(const RenderSettings *settings) {
+  return settings->heightfield.second_layer ? SIM_NEED_SECOND_LAYER : SIM_NEED_NOTHING;
+}
+
 const RenderStyle style_heightfield = {
     .name = "heightfield",
     .summary = "calm water as a height field that bends what stands in it, after Cords 2007",
     .needs = SIM_NEED_HEIGHT_FIELD | SIM_NEED_CLASS,
+    .needs_more = needs_more,
     .state_size = sizeof(Heightfield),
     .layers = layers,
     .layer_count = sizeof layers / sizeof layers[0],

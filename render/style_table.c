@@ -37,9 +37,10 @@ const char *render_style_summary(int32_t index) {
   return index >= 0 && index < render_style_count() ? render_styles[index]->summary : NULL;
 }
 
-unsigned render_style_needs(const char *name) {
+unsigned render_style_needs(const char *name, const RenderSettings *settings) {
   const RenderStyle *style = render_style_find(name);
-  return style != NULL ? style->needs : 0;
+  if (style == NULL) return 0;
+  return style->needs | (style->needs_more != NULL && settings != NULL ? style->needs_more(settings) : 0);
 }
 
 bool render_style_exists(const char *name) {

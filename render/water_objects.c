@@ -48,7 +48,7 @@ static float distance_between(const float a[3], const float b[3]) {
 
 // ---- From the frame --------------------------------------------------------------------------------------------------
 
-static bool field_is_sensible(const SimHeightField *f) {
+bool render_field_is_sensible(const SimHeightField *f) {
   return f->height != NULL && f->size[0] > 0 && f->size[1] > 0 && (int64_t)f->size[0] * f->size[1] <= MOST_NODES &&
          f->spacing > 1e-6f && f->spacing < RENDER_FARTHEST && fabsf(f->origin[0]) < RENDER_FARTHEST &&
          fabsf(f->origin[1]) < RENDER_FARTHEST;
@@ -63,7 +63,7 @@ static bool grow(void **array, size_t count, size_t size) {
 static bool make_room(RenderWaterObjects *found, const SimFrame *frame, RenderError *error) {
   const SimHeightField *f = &frame->height_field;
   const size_t obstacles = frame->obstacle_count > 0 ? (size_t)frame->obstacle_count : 0;
-  const size_t nodes = field_is_sensible(f) ? (size_t)f->size[0] * (size_t)f->size[1] : 0;
+  const size_t nodes = render_field_is_sensible(f) ? (size_t)f->size[0] * (size_t)f->size[1] : 0;
   if (obstacles > found->capacity) {
     if (!grow((void **)&found->of_obstacle, obstacles, sizeof *found->of_obstacle) ||
         !grow((void **)&found->solids, 2 * obstacles, sizeof *found->solids) ||
@@ -100,7 +100,7 @@ static void take_heights(Search *s) {
   const float lowest = fabsf(bottom) < RENDER_FARTHEST ? bottom : -RENDER_FARTHEST;
   s->nodes = (RenderWaterNodes){.height = s->found->heights, .spacing = 1, .mean = fmaxf(lowest, -RENDER_FARTHEST)};
   s->found->field = (SimHeightField){0};
-  if (!field_is_sensible(f)) return;
+  if (!render_field_is_sensible(f)) return;
   s->found->field = *f;
   s->found->field.height = s->found->heights;
   s->nodes.spacing = f->spacing;

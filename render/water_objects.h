@@ -59,6 +59,9 @@ void render_water_objects_destroy(RenderWaterObjects *found);
 void render_refraction_point(const float plane[4], const float eye[3], const float below[3], float index,
                              float point[3]);
 
+/// Has a height field nodes, of a number and at places that can be drawn?
+bool render_field_is_sensible(const SimHeightField *field);
+
 /// Distance of a point from an obstacle, m, negative inside. Exact for box, ball, cylinder and capsule, for stairs outside of
 /// them; a mesh stands for the box around it. INFINITY for an absurd obstacle.
 float render_obstacle_distance(const SimObstacle *obstacle, const float point[3]);

@@ -184,7 +184,7 @@ static void test_table_pool(void **state) {
   for (; count < FRAMES * STEP && source_next(source, &error) == SOURCE_FRAME; ++count) {
     if (count % STEP != 0) continue;
     SimObstacle obstacles[32];
-    const SimFrame *frame = source_frame(source, render_style_needs("heightfield"), &error);
+    const SimFrame *frame = source_frame(source, render_style_needs("heightfield", NULL), &error);
     assert_non_null(frame);
     const SimFrame painted = paint(frame, obstacles, 32);
     for (int k = 0; k < 2; ++k) {

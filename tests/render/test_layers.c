@@ -22,8 +22,8 @@ static void test_style_table(void **state) {
   assert_null(render_style_summary(render_style_count()));
   assert_false(render_style_exists("watercolour"));
   assert_false(render_style_exists(NULL));
-  assert_int_equal(render_style_needs("watercolour"), 0);
-  assert_int_equal(render_style_needs("points"), SIM_NEED_DENSITY);
+  assert_int_equal(render_style_needs("watercolour", NULL), 0);
+  assert_int_equal(render_style_needs("points", NULL), SIM_NEED_DENSITY);
   assert_true(render_style_exists(render_default_settings().style));
 }
 
