@@ -71,7 +71,7 @@ static void grow(RenderOverhang *overhang, const SimHeightField *field, float sm
       if (overhang->rings[node] != 0 || !continues(overhang, field, node, (uint8_t)ring, &underside)) continue;
       overhang->rings[node] = (uint8_t)ring;
       overhang->nodes[count + node] = field->height[node];
-      overhang->nodes[2 * count + node] = underside;
+      overhang->nodes[2 * count + node] = underside - field->spacing; // so that its end is hidden, however thin
       include_node(overhang, field, node);
     }
   }
@@ -99,15 +99,22 @@ bool render_overhang_find(RenderOverhang *overhang, const SimFrame *frame, float
 
 bool render_in_overhang(const SimHeightField *field, const float point[3], float close) {
   if (field->underside == NULL || field->size[0] <= 0 || !(field->spacing > 0)) return false;
-  size_t at[2];
+  int32_t at[2];
   for (int k = 0; k < 2; ++k) {
-    const float u = (point[2 * k] - field->origin[k]) / field->spacing + 0.5f;
-    if (!(u >= 0 && u < (float)field->size[k])) return false;
-    at[k] = (size_t)u;
+    const float u = (point[2 * k] - field->origin[k]) / field->spacing;
+    if (!(u >= 0 && u <= (float)(field->size[k] - 1))) return false;
+    at[k] = (int32_t)u;
   }
-  const size_t node = at[1] * (size_t)field->size[0] + at[0];
-  return field->second[node] < field->underside[node] && point[1] > field->underside[node] - close &&
-         point[1] < field->height[node] + close;
+  for (int corner = 0; corner < 4; ++corner) {
+    const int32_t i = at[0] + (corner & 1), k = at[1] + (corner >> 1);
+    if (i >= field->size[0] || k >= field->size[1]) continue;
+    const size_t node = (size_t)k * (size_t)field->size[0] + (size_t)i;
+    if (field->second[node] < field->underside[node] && point[1] > field->underside[node] - close &&
+        point[1] < field->height[node] + close) {
+      return true;
+    }
+  }
+  return false;
 }
 
 // ---- Drawing ---------------------------------------------------------------------------------------------------------

@@ -27,8 +27,8 @@ bool render_overhang_draw(RenderOverhang *overhang, RenderPicture *picture, cons
                           GpuInputs in, const char *defines, RenderError *error);
 void render_overhang_destroy(RenderOverhang *overhang);
 
-/// Is a point in water that hangs over air, or so close to it? Node by node, without the smoothing; false where no second layer is
-/// known.
+/// Is a point in water that hangs over air, or so close to it, at one of the four nodes around? Without the smoothing; false where no
+/// second layer is known.
 bool render_in_overhang(const SimHeightField *field, const float point[3], float close);
 
 #endif

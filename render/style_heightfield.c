@@ -223,7 +223,7 @@ static bool draw_overhang(Heightfield *s, RenderPicture *picture, RenderError *e
   if (!settings->second_layer) return true;
   char defines[sizeof picture->defines + 512];
   const int used = render_scene_defines(picture, defines, sizeof defines);
-  snprintf(defines + used, sizeof defines - (size_t)used, "%s%s", render_container_define(picture->frame),
+  snprintf(defines + used, sizeof defines - (size_t)used, "%s%s#define ROOF 1\n", render_container_define(picture->frame),
            render_caustics_defines(&s->caustics));
   return render_overhang_draw(&s->overhang, picture, &picture->frame->height_field, settings->smoothing,
                               light_inputs(s, picture), defines, error);

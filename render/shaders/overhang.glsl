@@ -82,7 +82,10 @@ void main() {
   }
   vec2 xz = place_of(texel);
 #ifdef CLIP_BOX
-  xz = clamp(xz, container_min.xz, container_max.xz);
+  // At a wall the faces are behind the side of the water below, and that is behind the sheet's own: what is seen through there
+  // goes on in the water that the sheet grows from, not the other way round.
+  float inset = (outward.y == 0.0 ? 1e-4 : 3e-4) * container_max.w;
+  xz = clamp(xz, container_min.xz + inset, container_max.xz - inset);
 #endif
   Sheet sheet = sheet_at(xz);
   at = vec3(xz.x, mix(sheet.underside, sheet.top, up), xz.y);
@@ -185,12 +188,20 @@ void main() {
   vec3 in_it = refract(way, normal, 1.0 / optics.x);
   float metres = way_out(at + in_it * 1e-4 * container_max.w, in_it, sheet.top - sheet.underside);
   vec3 out_at = at + in_it * metres, far_normal = normal_out(out_at);
+  bool on_in_water = over_water(out_at.xz) && out_at.y < water_surface(out_at.xz).x;
   far_normal = dot(far_normal, in_it) > 0.0 ? far_normal : -far_normal;
   vec3 out_of_it = refract(in_it, -far_normal, optics.x);
   out_of_it = out_of_it == vec3(0.0) ? in_it : out_of_it; // mirrored inside, again and again: taken for let through
 
   float path = distance(at, eye.xyz);
-  vec3 through = through_water(light_around(out_at, out_of_it, path + metres), metres, 1.0);
+  vec3 through = vec3(0.0);
+  for (int once = 0; once < int(on_in_water); ++once) { // a software rasteriser runs both sides of a branch, but no loop that does not begin
+    float more;
+    through = light_in_water(out_at, in_it, path + metres, more);
+    metres += more;
+  }
+  for (int once = int(on_in_water); once < 1; ++once) through = light_around(out_at, out_of_it, path + metres);
+  through = through_water(through, metres, 1.0);
   vec3 mirrored_way = reflect(way, normal);
   vec3 mirrored = light_around(at, mirrored_way, path) + sun_mirrored(at, mirrored_way);
   result = vec4(mix(through, mirrored, fresnel(-dot(normal, way), optics.x)), 1.0);
