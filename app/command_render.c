@@ -118,7 +118,8 @@ static void draw_name(Job *job, const char *style) {
 static bool draw_styles(Job *job, AppError *error) {
   const Options *options = job->options;
   unsigned needs = 0;
-  for (int i = 0; i < options->style_count; i++) needs |= render_style_needs(options->styles[i], source_settings(job->source));
+  for (int i = 0; i < options->style_count; i++)
+    needs |= render_style_needs(options->styles[i], source_settings(job->source));
   job->frame = source_frame(job->source, needs, error);
   if (!job->frame) return false;
   for (int i = 0; i < options->style_count; i++) {

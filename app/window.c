@@ -158,7 +158,8 @@ static bool lean(Window *window) {
 static LiveInput gather(Window *window) {
   RenderView view = camera_view(&window->input.camera);
   double step = 1 / window->options->fps, now = glfwGetTime();
-  LiveInput input = {.needs = render_style_needs(window->settings.style, &window->settings), .set_gravity = lean(window)};
+  LiveInput input = {.needs = render_style_needs(window->settings.style, &window->settings),
+                     .set_gravity = lean(window)};
   input.push_count = interact_take(&window->input.hand, &window->strength, &view, window->input.width,
                                    window->input.height, now - window->hand_time, input.pushes);
   window->hand_time = now;
@@ -233,7 +234,8 @@ static bool fit_size(Window *window, AppError *error) {
 // The picture alone, without text. The old style stays until a frame holds what the new one needs.
 static bool draw_picture(Window *window, AppError *error) {
   const LiveFrame *frame = live_frame(window->live);
-  if (!(render_style_needs(window->settings.style, &window->settings) & ~frame->needs)) window->shown_style = window->settings.style;
+  if (!(render_style_needs(window->settings.style, &window->settings) & ~frame->needs))
+    window->shown_style = window->settings.style;
   choose_layer(window);
   if (layer_index(window->shown_style, window->layer) < 0) window->layer = NULL;
   RenderSettings settings = window->settings;
@@ -438,8 +440,8 @@ static bool start(Window *window, AppError *error) {
   window->layer = options->layer;
   name_scene(window);
   if (!open_window(window, error)) return false;
-  window->live =
-      live_create(window->scene, options->fps, options->threads, render_style_needs(window->shown_style, &window->settings), error);
+  window->live = live_create(window->scene, options->fps, options->threads,
+                             render_style_needs(window->shown_style, &window->settings), error);
   if (!window->live) return false;
   if (options->stats && !(window->stats = stats_open(options->stats, error))) return false;
   window->strength = interact_strength(&live_frame(window->live)->frame.container, window->scene->simulation.gravity,

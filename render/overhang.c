@@ -130,14 +130,15 @@ static void find_quads(const RenderOverhang *overhang, const SimHeightField *fie
   const RenderHeightMap *map = &overhang->top;
   const float texels = field->spacing / map->spacing;
   for (int k = 0; k < 2; ++k) {
-    const float first = floorf(texels * (float)(overhang->low[k] - 1)), last = ceilf(texels * (float)(overhang->high[k] + 1));
+    const float first = floorf(texels * (float)(overhang->low[k] - 1)),
+                last = ceilf(texels * (float)(overhang->high[k] + 1));
     params->first[k] = (int32_t)fmaxf(first, 0);
     params->count[k] = (int32_t)fminf(last, (float)(map->size[k] - 1)) - params->first[k];
   }
 }
 
-bool render_overhang_draw(RenderOverhang *overhang, RenderPicture *picture, const SimHeightField *field, float smoothing,
-                          GpuInputs in, const char *defines, RenderError *error) {
+bool render_overhang_draw(RenderOverhang *overhang, RenderPicture *picture, const SimHeightField *field,
+                          float smoothing, GpuInputs in, const char *defines, RenderError *error) {
   if (overhang->high[0] < 0) return true;
   const size_t nodes = nodes_of(field);
   const GpuTextureDesc behind = {"overhang: behind", picture->width, picture->height, GPU_RGBA32F, false};

@@ -191,7 +191,7 @@ void main() {
   bool on_in_water = over_water(out_at.xz) && out_at.y < water_surface(out_at.xz).x;
   far_normal = dot(far_normal, in_it) > 0.0 ? far_normal : -far_normal;
   vec3 out_of_it = refract(in_it, -far_normal, optics.x);
-  out_of_it = out_of_it == vec3(0.0) ? in_it : out_of_it; // mirrored inside, again and again: taken for let through
+  float inner = on_in_water ? 0.0 : fresnel(dot(in_it, far_normal), 1.0 / optics.x); // 1 beyond the critical angle
 
   float path = distance(at, eye.xyz);
   vec3 through = vec3(0.0);
@@ -204,6 +204,9 @@ void main() {
   through = through_water(through, metres, 1.0);
   vec3 mirrored_way = reflect(way, normal);
   vec3 mirrored = light_around(at, mirrored_way, path) + sun_mirrored(at, mirrored_way);
-  result = vec4(mix(through, mirrored, fresnel(-dot(normal, way), optics.x)), 1.0);
+  // What is mirrored inside comes out on this side, more or less like what is mirrored at once, or goes on, and so on.
+  float outer = fresnel(-dot(normal, way), optics.x);
+  float let_through = (1.0 - outer) * (1.0 - inner) / max(1.0 - outer * inner, 1e-6);
+  result = vec4(mix(mirrored, through, let_through), 1.0);
 }
 #endif
