@@ -48,6 +48,14 @@ grid heightfield_eyes.jpg 2 eyes_each eyes_scaled eyes_one eyes_direction
 }
 grid heightfield_caustics.jpg 2 caustics_none caustics_simple caustics_traced caustics_both
 
+# A wave that breaks and jets, with one layer and with two.
+# shellcheck disable=SC2046,SC2086
+for layer in false true; do
+  picture lip_$layer dam_break 85 --size 640x480 --camera 1.8,0.7,2.6,2.6,0.4,0.5 $(set_key second_layer=$layer)
+  picture jets_$layer spouts 100 --size 640x480 $(set_key second_layer=$layer)
+done
+grid heightfield_layers.jpg 2 lip_false lip_true jets_false jets_true
+
 # Figure 10: rays looked up by direction, with the surface pulled to the objects' planes and without; and by point.
 # shellcheck disable=SC2046,SC2086
 {

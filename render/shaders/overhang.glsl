@@ -185,22 +185,33 @@ void main() {
   if (outward.y < 0.0) normal = normalize(vec3(sheet.underside_slope.x, -1.0, sheet.underside_slope.y));
   normal = facing_eye(normal, way);
 
-  vec3 in_it = refract(way, normal, 1.0 / optics.x);
-  float metres = way_out(at + in_it * 1e-4 * container_max.w, in_it, sheet.top - sheet.underside);
-  vec3 out_at = at + in_it * metres, far_normal = normal_out(out_at);
-  bool on_in_water = over_water(out_at.xz) && out_at.y < water_surface(out_at.xz).x;
-  far_normal = dot(far_normal, in_it) > 0.0 ? far_normal : -far_normal;
-  vec3 out_of_it = refract(in_it, -far_normal, optics.x);
-  float inner = on_in_water ? 0.0 : fresnel(dot(in_it, far_normal), 1.0 / optics.x); // 1 beyond the critical angle
+  // Along the ray in the sheet until it comes out, or goes on in the water that the sheet grows from.
+  const int LEGS = 3;
+  vec3 p = at, in_it = refract(way, normal, 1.0 / optics.x), out_of_it = vec3(0.0);
+  float metres = 0.0, inner = 0.0, thickness = sheet.top - sheet.underside;
+  bool on_in_water = false;
+  for (int i = 0; i < LEGS && out_of_it == vec3(0.0) && !on_in_water; ++i) {
+    in_it = i > 0 ? reflect(in_it, normal_out(p)) : in_it; // mirrored altogether
+    p += in_it * (1e-4 * container_max.w);
+    float t = way_out(p, in_it, thickness);
+    metres += t;
+    p += in_it * t;
+    on_in_water = over_water(p.xz) && p.y < water_surface(p.xz).x;
+    vec3 far_normal = normal_out(p);
+    far_normal = dot(far_normal, in_it) > 0.0 ? far_normal : -far_normal;
+    out_of_it = refract(in_it, -far_normal, optics.x);
+    inner = on_in_water || out_of_it == vec3(0.0) ? 0.0 : fresnel(dot(in_it, far_normal), 1.0 / optics.x);
+  }
+  out_of_it = out_of_it == vec3(0.0) ? in_it : out_of_it;
 
   float path = distance(at, eye.xyz);
   vec3 through = vec3(0.0);
   for (int once = 0; once < int(on_in_water); ++once) { // a software rasteriser runs both sides of a branch, but no loop that does not begin
     float more;
-    through = light_in_water(out_at, in_it, path + metres, more);
+    through = light_in_water(p, in_it, path + metres, more);
     metres += more;
   }
-  for (int once = int(on_in_water); once < 1; ++once) through = light_around(out_at, out_of_it, path + metres);
+  for (int once = int(on_in_water); once < 1; ++once) through = light_around(p, out_of_it, path + metres);
   through = through_water(through, metres, 1.0);
   vec3 mirrored_way = reflect(way, normal);
   vec3 mirrored = light_around(at, mirrored_way, path) + sun_mirrored(at, mirrored_way);
