@@ -8,6 +8,8 @@
 
 #define SPLASH_ABOVE 0.5f // radii
 #define ANY_ABOVE 2.0f
+#define FLOATS 8 // of a drop
+#define EACH (FLOATS * sizeof(float))
 
 // Height of the water over a place, between the nodes that have water; −INFINITY where the nearest one has none.
 static float water_at(const SimHeightField *field, float x, float z) {
@@ -39,6 +41,10 @@ bool render_is_drop(const SimFrame *frame, const SimHeightField *field, int32_t 
          !render_in_overhang(&frame->height_field, p, above * frame->particle_radius);
 }
 
+static float clamp01(float x) {
+  return x > 0 ? (x < 1 ? x : 1) : 0; // NaN becomes 0
+}
+
 bool render_drops_find(RenderDrops *drops, const SimFrame *frame, const SimHeightField *field, RenderError *error) {
   drops->count = 0;
   for (int32_t i = 0; i < frame->count; ++i) {
@@ -46,16 +52,19 @@ bool render_drops_find(RenderDrops *drops, const SimFrame *frame, const SimHeigh
     if (!render_is_drop(frame, field, i) || !(radius > 0 && radius < RENDER_FARTHEST)) continue;
     if (drops->count == drops->capacity) {
       const int32_t capacity = drops->capacity > 0 ? 2 * drops->capacity : 256;
-      float *staging = realloc(drops->staging, 4 * sizeof *staging * (size_t)capacity);
+      float *staging = realloc(drops->staging, FLOATS * sizeof *staging * (size_t)capacity);
       if (staging == NULL) return gpu_fail(error, "out of memory for %d drops", capacity);
       drops->staging = staging;
       drops->capacity = capacity;
     }
-    float *out = drops->staging + 4 * (size_t)drops->count++;
+    float *out = drops->staging + FLOATS * (size_t)drops->count++;
     memcpy(out, frame->position + 3 * (size_t)i, 3 * sizeof *out);
     out[3] = radius;
+    for (int k = 0; k < 3; ++k)
+      out[4 + k] = frame->colour != NULL ? clamp01(frame->colour[3 * (size_t)i + (size_t)k]) : 1;
+    out[7] = 0;
   }
-  return gpu_buffer_write(&drops->spheres, "drops", drops->staging, 4 * sizeof(float) * (size_t)drops->count, error);
+  return gpu_buffer_write(&drops->spheres, "drops", drops->staging, EACH * (size_t)drops->count, error);
 }
 
 bool render_drops_draw(RenderDrops *drops, RenderPicture *picture, GpuInputs in, const char *defines,
@@ -66,14 +75,14 @@ bool render_drops_draw(RenderDrops *drops, RenderPicture *picture, GpuInputs in,
   const GpuProgramDesc desc = {.label = "drops", .file = "drops.glsl", .defines = defines};
   if (!gpu_program_prepare(&drops->program, &desc, error)) return false;
   gpu_texture_copy(&picture->colour, &drops->behind);
-  const int32_t most = gpu_block_elements(picture->gpu, 4 * sizeof(float), error);
+  const int32_t most = gpu_block_elements(picture->gpu, EACH, error);
   if (most == 0) return false;
   in.textures[0] = &drops->behind;
   in.storage[1] = &drops->spheres;
   for (int64_t first = 0; first < drops->count; first += most) {
     const int64_t left = drops->count - first;
     const int32_t drawn = left < most ? (int32_t)left : most;
-    in.parts[1] = (GpuPart){4 * sizeof(float) * (size_t)first, 4 * sizeof(float) * (size_t)drawn};
+    in.parts[1] = (GpuPart){EACH * (size_t)first, EACH * (size_t)drawn};
     gpu_draw(picture->gpu, &(GpuDraw){.program = &drops->program,
                                       .target = &picture->target,
                                       .vertices = 6 * drawn,

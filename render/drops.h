@@ -6,9 +6,9 @@
 
 typedef struct RenderDrops {
   GpuProgram program;
-  GpuBuffer spheres; // (count) vec4: centre and radius, m
+  GpuBuffer spheres; // (count, 2) vec4: centre and radius, m; linear colour, –
   int32_t count;
-  float *staging; // (capacity, 4)
+  float *staging; // (capacity, 8)
   int32_t capacity;
   GpuTexture behind; // the picture before the drops
 } RenderDrops;
@@ -19,7 +19,8 @@ bool render_is_drop(const SimFrame *frame, const SimHeightField *field, int32_t 
 
 /// Those of a frame whose particles have classes.
 bool render_drops_find(RenderDrops *drops, const SimFrame *frame, const SimHeightField *field, RenderError *error);
-/// Over the picture at hand. `in`: what lights them, with the height map. `defines`: those of the scene.
+/// Over the picture at hand. `in`: what lights them, with the height map. `defines`: those of the scene, and TINTED
+/// where particles have colours.
 bool render_drops_draw(RenderDrops *drops, RenderPicture *picture, GpuInputs in, const char *defines,
                        RenderError *error);
 void render_drops_destroy(RenderDrops *drops);

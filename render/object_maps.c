@@ -18,6 +18,7 @@ typedef struct PoolBlock {
   RenderCausticsBlock caustics;
   float optics[4];
   int32_t numbers[4];
+  RenderColoursBlock colours;
   ObjectBlock objects[RENDER_MAX_WATER_OBJECTS];
 } PoolBlock;
 
@@ -60,14 +61,16 @@ static bool upload_bodies(RenderPool *pool, const RenderPicture *picture, const 
 }
 
 bool render_pool_upload(RenderPool *pool, const RenderPicture *picture, const RenderHeightMap *map,
-                        const RenderCaustics *caustics, const RenderWaterObjects *objects,
-                        const RenderSurfaceMesh *mesh, float border, RenderError *error) {
+                        const RenderCaustics *caustics, const RenderWaterColours *colours,
+                        const RenderWaterObjects *objects, const RenderSurfaceMesh *mesh, float border,
+                        RenderError *error) {
   const RenderSettings *settings = picture->settings;
   PoolBlock block = {.height = render_height_block(map),
                      .caustics = render_caustics_block(caustics, picture),
                      .optics = {settings->refractive_index, border, settings->heightfield.trapezium_a,
                                 settings->heightfield.trapezium_b},
-                     .numbers = {objects->count, mesh->size[0], mesh->size[1], mesh->step}};
+                     .numbers = {objects->count, mesh->size[0], mesh->size[1], mesh->step},
+                     .colours = render_water_colours_block(colours)};
   for (int32_t i = 0; i < objects->count; ++i) block.objects[i] = object_block(&objects->objects[i]);
   return gpu_buffer_write(&pool->pool, "pool", &block, sizeof block, error) &&
          upload_bodies(pool, picture, objects, error);

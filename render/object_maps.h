@@ -4,6 +4,7 @@
 #define LIDO_RENDER_OBJECT_MAPS_H
 
 #include "render/caustics.h"
+#include "render/water_colours.h"
 #include "render/water_objects.h"
 
 /// Triangles of the surface: vertices along x and z, and texels of the height map from one to the next.
@@ -20,7 +21,7 @@ typedef struct RenderPool {
   bool surroundings; // there are bodies that belong to no object
 } RenderPool;
 bool render_pool_upload(RenderPool *pool, const RenderPicture *picture, const RenderHeightMap *map,
-                        const RenderCaustics *caustics, const RenderWaterObjects *objects,
+                        const RenderCaustics *caustics, const RenderWaterColours *colours, const RenderWaterObjects *objects,
                         const RenderSurfaceMesh *mesh, float border, RenderError *error);
 void render_pool_destroy(RenderPool *pool);
 

@@ -14,6 +14,7 @@
 #include "render/overhang.h"
 #include "render/scene_rays.h"
 #include "render/style.h"
+#include "render/water_colours.h"
 
 #include <stddef.h>
 #include <stdio.h>
@@ -23,6 +24,7 @@ typedef struct Heightfield {
   RenderWaterObjects objects;
   RenderHeightMap map;
   RenderCaustics caustics;
+  RenderWaterColours colours;
   RenderPool pool;
   RenderObjectMaps object_maps;
   GpuProgram surface_program, wall_program;
@@ -73,6 +75,7 @@ static void heightfield_destroy(void *state) {
   render_water_objects_destroy(&s->objects);
   render_height_map_destroy(&s->map);
   render_caustics_destroy(&s->caustics);
+  render_water_colours_destroy(&s->colours);
   render_pool_destroy(&s->pool);
   render_object_maps_destroy(&s->object_maps);
   render_overhang_destroy(&s->overhang);
@@ -100,7 +103,12 @@ static GpuInputs light_inputs(const Heightfield *s, const RenderPicture *picture
                                   &picture->background.colour,
                                   &s->caustics.solid},
                      .storage = {&picture->obstacles.bodies, [5] = &s->pool.object_of_body, &s->pool.pool},
+                     .views = {s->colours.any ? &s->colours.values : NULL},
                      .frame = &picture->uniforms};
+}
+
+static const char *tint_define(const Heightfield *s) {
+  return s->colours.any ? "#define TINTED 1\n" : "";
 }
 
 static bool draw_sides(Heightfield *s, RenderPicture *picture, const RenderSurfaceMesh *mesh, RenderError *error) {
@@ -173,8 +181,8 @@ static bool draw_light(Heightfield *s, RenderPicture *picture, GpuProgram *progr
   const RenderHeightfield *settings = &picture->settings->heightfield;
   char defines[sizeof picture->defines + 512];
   const int used = render_scene_defines(picture, defines, sizeof defines);
-  snprintf(defines + used, sizeof defines - (size_t)used, "%s%s#define %s 1\n%s%s%s%s%s",
-           render_container_define(picture->frame), render_caustics_defines(&s->caustics), pixels,
+  snprintf(defines + used, sizeof defines - (size_t)used, "%s%s%s#define %s 1\n%s%s%s%s%s",
+           render_container_define(picture->frame), render_caustics_defines(&s->caustics), tint_define(s), pixels,
            mapped ? "#define MAPPED 1\n" : "#define ROOF 1\n",
            mapped && !s->pool.surroundings ? "#undef BODIES\n" : "", // all of them are in the maps
            settings->trapezium ? "#define TRAPEZIUM 1\n" : "",
@@ -208,14 +216,16 @@ static bool draw_maps(Heightfield *s, RenderPicture *picture, RenderError *error
 
 static bool find_water(Heightfield *s, RenderPicture *picture, RenderError *error) {
   const RenderHeightfield *settings = &picture->settings->heightfield;
-  SimFrame lowest = *picture->frame; // with the water that reaches down to the floor
+  const SimFrame *frame = picture->frame;
+  SimFrame lowest = *frame; // with the water that reaches down to the floor
   if (settings->second_layer) {
-    if (!render_overhang_find(&s->overhang, picture->frame, settings->smoothing, error)) return false;
+    if (!render_overhang_find(&s->overhang, frame, settings->smoothing, error)) return false;
     lowest.height_field.height = s->overhang.nodes;
   }
   return render_water_objects_find(&s->objects, &lowest, picture->block.eye, settings,
                                    picture->settings->refractive_index, error) &&
-         render_height_map_draw(&s->map, picture, &s->objects.field, s->objects.heights, settings->smoothing, error);
+         render_height_map_draw(&s->map, picture, &s->objects.field, s->objects.heights, settings->smoothing, error) &&
+         render_water_colours_find(&s->colours, frame, &s->objects.field, error);
 }
 
 static bool draw_overhang(Heightfield *s, RenderPicture *picture, RenderError *error) {
@@ -223,16 +233,18 @@ static bool draw_overhang(Heightfield *s, RenderPicture *picture, RenderError *e
   if (!settings->second_layer) return true;
   char defines[sizeof picture->defines + 512];
   const int used = render_scene_defines(picture, defines, sizeof defines);
-  snprintf(defines + used, sizeof defines - (size_t)used, "%s%s#define ROOF 1\n", render_container_define(picture->frame),
-           render_caustics_defines(&s->caustics));
+  snprintf(defines + used, sizeof defines - (size_t)used, "%s%s%s#define ROOF 1\n",
+           render_container_define(picture->frame), render_caustics_defines(&s->caustics), tint_define(s));
   return render_overhang_draw(&s->overhang, picture, &picture->frame->height_field, settings->smoothing,
                               light_inputs(s, picture), defines, error);
 }
 
 static bool draw_drops(Heightfield *s, RenderPicture *picture, RenderError *error) {
   if (!picture->settings->heightfield.drops) return true;
+  char defines[sizeof picture->defines + 64];
+  snprintf(defines, sizeof defines, "%s%s", picture->defines, tint_define(s));
   return render_drops_find(&s->drops, picture->frame, &s->objects.field, error) &&
-         render_drops_draw(&s->drops, picture, light_inputs(s, picture), picture->defines, error);
+         render_drops_draw(&s->drops, picture, light_inputs(s, picture), defines, error);
 }
 
 // In the container and below the surface there.
@@ -258,8 +270,8 @@ static bool heightfield_draw(void *state, RenderPicture *picture, RenderError *e
 
   gpu_pass_begin(gpu, "caustics");
   ok = ok && render_caustics_draw(&s->caustics, picture, &s->map, error) &&
-       render_pool_upload(&s->pool, picture, &s->map, &s->caustics, &s->objects, &mesh, (float)s->object_maps.border,
-                          error);
+       render_pool_upload(&s->pool, picture, &s->map, &s->caustics, &s->colours, &s->objects, &mesh,
+                          (float)s->object_maps.border, error);
   gpu_pass_end(gpu);
 
   gpu_pass_begin(gpu, "objects");

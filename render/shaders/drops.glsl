@@ -5,14 +5,16 @@
 #include "pool.glsl"
 
 #ifdef VERTEX_STAGE
-layout(std430, binding = 1) readonly buffer Spheres { vec4 spheres[]; };
+layout(std430, binding = 1) readonly buffer Spheres { vec4 spheres[]; }; // centre and radius, colour
 flat out vec4 centre;   // in world axes; radius
+flat out vec3 colour;
 noperspective out vec2 at; // x and y of the pixel's ray
 
 const vec2 CORNERS[6] = vec2[6](vec2(0, 0), vec2(1, 0), vec2(1, 1), vec2(0, 0), vec2(1, 1), vec2(0, 1));
 
 void main() {
-  centre = spheres[gl_VertexID / 6];
+  centre = spheres[2 * (gl_VertexID / 6)];
+  colour = spheres[2 * (gl_VertexID / 6) + 1].rgb;
   vec3 c = to_view(centre.xyz);
   vec4 bounds = bounds_of(c, centre.w);
   at = mix(bounds.xy, bounds.zw, CORNERS[gl_VertexID % 6]);
@@ -26,6 +28,7 @@ void main() {
 #include "fresnel.glsl"
 layout(binding = 0) uniform sampler2D behind;  // the picture without drops
 flat in vec4 centre;
+flat in vec3 colour;
 noperspective in vec2 at;
 layout(location = 0) out vec4 result;
 
@@ -61,6 +64,9 @@ void main() {
   vec3 sky_seen = mirrored.y > 0.0 ? sky(mirrored) : light_below(p, mirrored);
   vec3 sun_seen = sun_colour.rgb * sun_past_solids(p) * glint * 0.05;
   float mirror = fresnel(-dot(normal, way), optics.x);
+#ifdef TINTED
+  through *= mix(vec3(1.0), colour, 1.0 - exp(-chord / colour_grid.w));
+#endif
   result = vec4(mix(through * exp(-absorption.rgb * chord), sky_seen, mirror) + sun_seen, 1.0);
   gl_FragDepth = depth_of(depth);
 }

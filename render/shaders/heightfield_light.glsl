@@ -26,6 +26,7 @@ layout(std430, binding = 5) readonly buffer Objects { int object_of_body[]; };
 #include "container.glsl"
 #include "fresnel.glsl"
 #include "pool_water.glsl"
+#include "water_colours.glsl"
 #ifdef MAPPED
 #include "plane_water.glsl"
 #include "object_maps.glsl"
@@ -35,10 +36,11 @@ layout(location = 0) out vec4 result;
 vec3 refracted_light(vec3 p, vec3 way, float path) {
   float metres;
   vec3 light = light_in_water(p, way, path, metres);
-  light = through_water(light, metres, 1.0);
+  light = tinted(through_water(light, metres, 1.0), p.xz, 0, metres);
 #ifdef MAPPED
   Seen seen = see_objects(p, way, metres, false);
-  light = light * (1.0 - seen.light.a) + through_water(seen.light.rgb, seen.t, seen.light.a);
+  vec3 object = through_water(seen.light.rgb, seen.t, seen.light.a);
+  light = light * (1.0 - seen.light.a) + tinted(object, p.xz, 0, seen.t);
 #endif
   return light;
 }
@@ -74,7 +76,7 @@ void main() {
 #ifdef SUBMERGED
   float metres;
   vec3 light = light_in_water(eye.xyz, way, 0.0, metres);
-  result = vec4(through_water(light, metres, 1.0), 1.0);
+  result = vec4(tinted(through_water(light, metres, 1.0), eye.xz, 0, metres), 1.0);
 #else
   vec4 s = texelFetch(surface, ivec2(gl_FragCoord.xy), 0);
 #ifdef SIDES

@@ -102,6 +102,7 @@ layout(binding = 8) uniform sampler2D background; // linear light, depth
 #include "container.glsl"
 #include "fresnel.glsl"
 #include "pool_water.glsl"
+#include "water_colours.glsl"
 in vec3 at;
 flat in vec3 outward;
 layout(location = 0) out vec4 result;
@@ -209,10 +210,10 @@ void main() {
   for (int once = 0; once < int(on_in_water); ++once) { // a software rasteriser runs both sides of a branch, but no loop that does not begin
     float more;
     through = light_in_water(p, in_it, path + metres, more);
-    metres += more;
+    through = tinted(through_water(through, more, 1.0), p.xz, 0, more);
   }
   for (int once = int(on_in_water); once < 1; ++once) through = light_around(p, out_of_it, path + metres);
-  through = through_water(through, metres, 1.0);
+  through = tinted(through_water(through, metres, 1.0), at.xz, 1, metres);
   vec3 mirrored_way = reflect(way, normal);
   vec3 mirrored = light_around(at, mirrored_way, path) + sun_mirrored(at, mirrored_way);
   // What is mirrored inside comes out on this side, more or less like what is mirrored at once, or goes on, and so on.

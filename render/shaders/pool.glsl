@@ -19,5 +19,7 @@ layout(std430, binding = 6) readonly buffer Pool {
                         // border; the refracted sunlight below level water, across it, in that of the sun
   vec4 optics;          // refractive index; border of the maps of objects, pixels; a and b of the trapezium
   ivec4 numbers;        // objects; vertices along x and z of the surface's mesh; texels from one to the next
+  vec4 colour_grid;     // x and z of the first colour, between colours, water that has 1 − 1/e of its colour; m
+  ivec4 colour_numbers; // along x and z; –
   WaterObject objects[];
 };
