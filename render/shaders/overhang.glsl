@@ -210,10 +210,10 @@ void main() {
   for (int once = 0; once < int(on_in_water); ++once) { // a software rasteriser runs both sides of a branch, but no loop that does not begin
     float more;
     through = light_in_water(p, in_it, path + metres, more);
-    through = tinted(through_water(through, more, 1.0), p.xz, 0, more);
+    through = tinted(through_water(through, more, 1.0, sun_past_solids(p)), p.xz, 0, more);
   }
   for (int once = int(on_in_water); once < 1; ++once) through = light_around(p, out_of_it, path + metres);
-  through = tinted(through_water(through, metres, 1.0), at.xz, 1, metres);
+  through = tinted(through_water(through, metres, 1.0, sun_past_solids(at)), at.xz, 1, metres);
   vec3 mirrored_way = reflect(way, normal);
   vec3 mirrored = light_around(at, mirrored_way, path) + sun_mirrored(at, mirrored_way);
   // What is mirrored inside comes out on this side, more or less like what is mirrored at once, or goes on, and so on.

@@ -1,9 +1,10 @@
 // Light along a ray in the water. Include it after scene.glsl, scene_light.glsl, container.glsl, height_map.glsl and fresnel.glsl.
 
-// What is left of light on t metres of water, and what the water itself sends back on that way; `share` of it is to be seen.
-vec3 through_water(vec3 light, float t, float share) {
+// What is left of light on t metres of water, and what the water itself sends back on that way; `share` of it is to be seen, and `lit`
+// of the sun falls on it.
+vec3 through_water(vec3 light, float t, float share, float lit) {
   vec3 extinction = max(absorption.rgb + scattering.rgb, 1e-6), left = exp(-extinction * t);
-  vec3 source = sun_colour.rgb * (0.09 + 0.09 * max(sun_direction.y, 0.0)) + sky_average(vec3(0.0, 1.0, 0.0)) * 0.9;
+  vec3 source = lit * sun_colour.rgb * (0.09 + 0.09 * max(sun_direction.y, 0.0)) + sky_average(vec3(0.0, 1.0, 0.0)) * 0.9;
   return light * left + share * scattering.rgb / extinction * (1.0 - left) * source;
 }
 
