@@ -119,10 +119,13 @@ bool render_in_overhang(const SimHeightField *field, const float point[3], float
 
 // ---- Drawing ---------------------------------------------------------------------------------------------------------
 
+#define MOST_QUADS 30000 // of a face, or its vertices would cost more than its pixels
+
 // std140 block of overhang.glsl
 typedef struct Params {
   RenderBodyEnds ends;
-  int32_t first[2], count[2]; // of the quads, in texels
+  int32_t first[2], count[2]; // texels: where the quads begin; quads along x and z
+  int32_t step[4];            // texels from one to the next; –
 } Params;
 
 // The texels around the sheet's nodes, with one node more on each side.
@@ -135,6 +138,10 @@ static void find_quads(const RenderOverhang *overhang, const SimHeightField *fie
     params->first[k] = (int32_t)fmaxf(first, 0);
     params->count[k] = (int32_t)fminf(last, (float)(map->size[k] - 1)) - params->first[k];
   }
+  int32_t step = 1;
+  while ((int64_t)(params->count[0] / step) * (params->count[1] / step) > MOST_QUADS) ++step;
+  for (int k = 0; k < 2; ++k) params->count[k] = (params->count[k] + step - 1) / step;
+  params->step[0] = step;
 }
 
 bool render_overhang_draw(RenderOverhang *overhang, RenderPicture *picture, const SimHeightField *field,

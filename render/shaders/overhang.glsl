@@ -10,6 +10,7 @@
 layout(std140, binding = 1) uniform Params {
   ivec4 ends[2];        // of the bodies of each shape
   ivec4 quads;          // the first texel of the mesh and how many quads, along x and z
+  ivec4 steps;          // texels from one quad to the next; –
 };
 layout(binding = 1) uniform sampler2D overhang_top;       // as height_surface
 layout(binding = 2) uniform sampler2D overhang_underside;
@@ -46,12 +47,14 @@ vec2 place_of(ivec2 texel) {
   return ((vec2(texel) + 0.5) / vec2(textureSize(overhang_top, 0)) - height_place.zw) / height_place.xy;
 }
 
+ivec2 corner_of(ivec2 quad) {
+  return min(quads.xy + quad * steps.x, textureSize(overhang_top, 0) - 1);
+}
+
 // Does a quad have any of the sheet?
-bool in_sheet(ivec2 texel) {
+bool in_sheet(ivec2 quad) {
   float most = 0.0;
-  for (int k = 0; k < 4; ++k) {
-    most = max(most, texelFetch(overhang_top, min(texel + ivec2(k & 1, k >> 1), textureSize(overhang_top, 0) - 1), 0).y);
-  }
+  for (int k = 0; k < 4; ++k) most = max(most, texelFetch(overhang_top, corner_of(quad + ivec2(k & 1, k >> 1)), 0).y);
   return most >= 0.5;
 }
 
@@ -65,17 +68,19 @@ void main() {
     ivec2 cell = ivec2(quad % cells % quads.z, quad % cells / quads.z);
     up = quad < cells ? 1.0 : 0.0;
     outward = vec3(0.0, 2.0 * up - 1.0, 0.0);
-    texel = quads.xy + cell + ivec2(corner);
-    shown = in_sheet(quads.xy + cell);
+    texel = corner_of(cell + ivec2(corner));
+    shown = in_sheet(cell);
   } else { // along the two walls of x, then those of z
     bool of_x = side < 2 * quads.w;
     int along = of_x ? quads.w : quads.z;
     bool far = (of_x ? side : side - 2 * quads.w) >= along;
     int piece = (of_x ? side : side - 2 * quads.w) % along + int(corner.x);
-    texel = of_x ? ivec2(far ? last.x : 0, quads.y + piece) : ivec2(quads.x + piece, far ? last.y : 0);
+    ivec2 end = corner_of(quads.zw);
+    texel = corner_of(of_x ? ivec2(0, piece) : ivec2(piece, 0));
+    texel = of_x ? ivec2(far ? end.x : quads.x, texel.y) : ivec2(texel.x, far ? end.y : quads.y);
     outward = of_x ? vec3(far ? 1.0 : -1.0, 0.0, 0.0) : vec3(0.0, 0.0, far ? 1.0 : -1.0);
     shown = texelFetch(overhang_top, texel, 0).y >= 0.5 &&
-            (of_x ? (far ? quads.x + quads.z == last.x : quads.x == 0) : (far ? quads.y + quads.w == last.y : quads.y == 0));
+            (of_x ? (far ? end.x == last.x : quads.x == 0) : (far ? end.y == last.y : quads.y == 0));
 #ifndef CLIP_BOX
     shown = false;
 #endif

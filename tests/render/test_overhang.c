@@ -237,6 +237,8 @@ static void test_absurd_fields(void **state) {
   Pool *s = pool_create(0.3f);
   const RenderView eyes[] = {above, harness_view(2, 0.75f, 2, 2.5f, 0.7f, 2, 40),
                              harness_view(2, 0.5f, 2, 2, 2, 2.01f, 40), harness_view(2, 0.5f, 3.9f, 2, 0.6f, 2, 60)};
+  s->frame->frame.height_field.size[0] = s->frame->frame.height_field.size[1] = 41;
+  s->frame->frame.height_field.spacing = 0.1f;
   for (int places = 0; places < DEGENERATE_PLACES; ++places) {
     float *const arrays[] = {s->height, s->underside, s->second};
     for (int array = 0; array < 3; ++array) {
