@@ -61,7 +61,8 @@ vec3 scene_through(vec3 p, vec3 way, float path, bool mirrors, out float t) {
   Meeting meeting = meet_scene(p, way);
   float wall = room_from(p, way).y;
   t = 0.0;
-  for (int i = 0; i < int(mirrors && meeting.t > wall); ++i) {
+  float at_wall = wall + 1e-4 * container_max.w; // a solid flush with the wall is met, not the wall
+  for (int i = 0; i < int(mirrors && meeting.t > at_wall); ++i) {
     t = wall;
     p += way * wall;
     way = reflect(way, wall_normal(p));
