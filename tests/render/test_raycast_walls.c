@@ -313,6 +313,44 @@ static void test_side_wall_mirrors(void **state) {
   harness_close(&harness);
 }
 
+// A slab outside of the left wall, whose face is as far into the tank.
+static uint8_t *draw_slab(Harness *harness, const TestWater *water, const RenderView *view, float inwards) {
+  const SimObstacle slab = {.shape = SIM_BOX,
+                            .size = {0.1f, 2, 4},
+                            .position = {wall_tank.min[0] - 0.05f + inwards, 0.5f, 0.5f},
+                            .rotation = {0, 0, 0, 1},
+                            .colour = {0.9f, 0.2f, 0.1f}};
+  SimFrame frame = water->frame;
+  frame.obstacles = &slab;
+  frame.obstacle_count = 1;
+  RenderSettings settings = harness_pinned_settings();
+  settings.style = "raycast";
+  return harness_draw(harness, &frame, view, &settings);
+}
+
+// A solid whose face lies in a wall is met by rays in the water, and no wall mirrors there.
+static void test_solid_flush_with_wall(void **state) {
+  const Pools *pools = *state;
+  Harness harness = harness_open(CONTEXT_AUTO, WIDTH, HEIGHT);
+  const RenderView view = {{0.75f, 0.6f, 1.9f}, {0.06f, 0.17f, 0.525f}, 9};
+  uint8_t *flush = draw_slab(&harness, &pools->tank, &view, 0);
+  uint8_t *inside = draw_slab(&harness, &pools->tank, &view, 0.001f);
+  int other = 0, slab = 0;
+  for (int i = 0; i < PIXELS; ++i) {
+    int most = 0;
+    for (int k = 0; k < 3; ++k) most = (int)fmax(most, abs(flush[3 * i + k] - inside[3 * i + k]));
+    other += most > 12;
+    slab += inside[3 * i] > inside[3 * i + 2] + 40;
+  }
+  print_message("a slab in the left wall: %d pixels, %d of the picture are others than with it a millimetre inside\n",
+                slab, other);
+  assert_true(slab > 200);
+  assert_true(other < 60); // along its edges
+  free(flush);
+  free(inside);
+  harness_close(&harness);
+}
+
 static int open_pools(void **state) {
   Pools *pools = malloc(sizeof *pools);
   *pools = (Pools){test_water_pool(&wall_tank, WALL_RADIUS, WALL_LEVEL),
@@ -331,6 +369,7 @@ static int close_pools(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_flush), cmocka_unit_test(test_no_seam),
-                                     cmocka_unit_test(test_like_twin), cmocka_unit_test(test_side_wall_mirrors)};
+                                     cmocka_unit_test(test_like_twin), cmocka_unit_test(test_side_wall_mirrors),
+                                     cmocka_unit_test(test_solid_flush_with_wall)};
   return cmocka_run_group_tests(tests, open_pools, close_pools);
 }
