@@ -34,8 +34,9 @@ layout(std430, binding = 5) readonly buffer Objects { int object_of_body[]; };
 layout(location = 0) out vec4 result;
 
 vec3 refracted_light(vec3 p, vec3 way, float path) {
-  float metres, lit = sun_past_solids(p);
+  float metres;
   vec3 light = light_in_water(p, way, path, metres);
+  float lit = lit_along(p, way, metres);
   light = tinted(through_water(light, metres, 1.0, lit), p.xz, 0, metres);
 #ifdef MAPPED
   Seen seen = see_objects(p, way, metres, false);
@@ -76,7 +77,7 @@ void main() {
 #ifdef SUBMERGED
   float metres;
   vec3 light = light_in_water(eye.xyz, way, 0.0, metres);
-  result = vec4(tinted(through_water(light, metres, 1.0, sun_past_solids(eye.xyz)), eye.xz, 0, metres), 1.0);
+  result = vec4(tinted(through_water(light, metres, 1.0, lit_along(eye.xyz, way, metres)), eye.xz, 0, metres), 1.0);
 #else
   vec4 s = texelFetch(surface, ivec2(gl_FragCoord.xy), 0);
 #ifdef SIDES

@@ -215,7 +215,7 @@ void main() {
   for (int once = 0; once < int(on_in_water); ++once) { // a software rasteriser runs both sides of a branch, but no loop that does not begin
     float more;
     through = light_in_water(p, in_it, path + metres, more);
-    through = tinted(through_water(through, more, 1.0, sun_past_solids(p)), p.xz, 0, more);
+    through = tinted(through_water(through, more, 1.0, lit_along(p, in_it, more)), p.xz, 0, more);
   }
   for (int once = int(on_in_water); once < 1; ++once) through = light_around(p, out_of_it, path + metres);
   through = tinted(through_water(through, metres, 1.0, sun_past_solids(at)), at.xz, 1, metres);

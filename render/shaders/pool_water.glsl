@@ -1,5 +1,10 @@
 // Light along a ray in the water. Include it after scene.glsl, scene_light.glsl, container.glsl, height_map.glsl and fresnel.glsl.
 
+// How much of the sun falls on a way of so many metres in the water: the mean of where it begins, at the surface, and of where it ends.
+float lit_along(vec3 p, vec3 way, float metres) {
+  return 0.5 * (sun_past_solids(p) + caustic_past_solids(p + way * metres, vec3(0.0)));
+}
+
 // What is left of light on t metres of water, and what the water itself sends back on that way; `share` of it is to be seen, and `lit`
 // of the sun falls on it.
 vec3 through_water(vec3 light, float t, float share, float lit) {
