@@ -1,5 +1,5 @@
-// Water that hangs over air, drawn over the picture of the water below it: a sheet between two height maps. Light is mirrored at the
-// face that the eye sees, by Fresnel's equations, and bent through the sheet to what lies behind.
+// Water that hangs over air, drawn over the picture of the water below it: a sheet between two height maps. Light is mirrored at
+// the face that the eye sees, by Fresnel's equations, and bent through the sheet to what lies behind.
 #include "frame.glsl"
 #include "pool.glsl"
 #include "height_map.glsl"
@@ -142,15 +142,22 @@ float way_out(vec3 p, vec3 way, float thickness) {
   return before;
 }
 
+vec3 top_normal(Sheet sheet) {
+  return normalize(vec3(-sheet.top_slope.x, 1.0, -sheet.top_slope.y));
+}
+
+vec3 underside_normal(Sheet sheet) {
+  return normalize(vec3(sheet.underside_slope.x, -1.0, sheet.underside_slope.y));
+}
+
+// Outward unit normal where a ray leaves the sheet.
 vec3 normal_out(vec3 p) {
 #ifdef CLIP_BOX
   vec3 within = min(p - container_min.xyz, container_max.xyz - p);
   if (min(within.x, within.z) < 1e-3 * height_range.z) return wall_normal(p);
 #endif
   Sheet sheet = sheet_at(p.xz);
-  bool up = sheet.top - p.y < p.y - sheet.underside;
-  return up ? normalize(vec3(-sheet.top_slope.x, 1.0, -sheet.top_slope.y))
-            : normalize(vec3(sheet.underside_slope.x, -1.0, sheet.underside_slope.y));
+  return sheet.top - p.y < p.y - sheet.underside ? top_normal(sheet) : underside_normal(sheet);
 }
 
 // Metres to where a ray in the air comes down to the water below; FAR: nowhere.
@@ -177,6 +184,39 @@ vec3 light_around(vec3 p, vec3 way, float path) {
   return texelFetch(behind, ivec2(pixel), 0).rgb;
 }
 
+// What a ray in the sheet sees, from where it begins to where it comes out or goes on in the water that the sheet grows from.
+// `inner`: the share that is mirrored where it comes out.
+vec3 light_in_sheet(vec3 way, Sheet sheet, float path, out float inner) {
+  const int LEGS = 3;
+  vec3 p = at, out_of_it = vec3(0.0);
+  float metres = 0.0, thickness = sheet.top - sheet.underside;
+  bool on_in_water = false;
+  inner = 0.0;
+  for (int i = 0; i < LEGS && out_of_it == vec3(0.0) && !on_in_water; ++i) {
+    way = i > 0 ? reflect(way, normal_out(p)) : way; // mirrored altogether
+    p += way * (1e-4 * container_max.w);
+    float t = way_out(p, way, thickness);
+    metres += t;
+    p += way * t;
+    on_in_water = over_water(p.xz) && p.y < water_surface(p.xz).x;
+    vec3 normal = normal_out(p);
+    normal = dot(normal, way) > 0.0 ? normal : -normal;
+    out_of_it = refract(way, -normal, optics.x);
+    inner = on_in_water || out_of_it == vec3(0.0) ? 0.0 : fresnel(dot(way, normal), 1.0 / optics.x);
+  }
+  out_of_it = out_of_it == vec3(0.0) ? way : out_of_it;
+
+  // A software rasteriser runs both sides of a branch, but no loop that does not begin.
+  vec3 light = vec3(0.0);
+  for (int once = 0; once < int(on_in_water); ++once) {
+    float more;
+    light = light_in_water(p, way, path + metres, more);
+    light = tinted(through_water(light, more, 1.0, lit_along(p, way, more)), p.xz, 0, more);
+  }
+  for (int once = int(on_in_water); once < 1; ++once) light = light_around(p, out_of_it, path + metres);
+  return tinted(through_water(light, metres, 1.0, sun_past_solids(at)), at.xz, 1, metres);
+}
+
 void main() {
   float depth = 1.0 / gl_FragCoord.w;
   if (depth < eye.w) discard;
@@ -186,43 +226,12 @@ void main() {
 #endif
   Sheet sheet = sheet_at(at.xz);
   if (sheet.share < 0.5) discard;
-  vec3 way = normalize(at - eye.xyz), normal = outward;
-  if (outward.y > 0.0) normal = normalize(vec3(-sheet.top_slope.x, 1.0, -sheet.top_slope.y));
-  if (outward.y < 0.0) normal = normalize(vec3(sheet.underside_slope.x, -1.0, sheet.underside_slope.y));
-  normal = facing_eye(normal, way);
-
-  // Along the ray in the sheet until it comes out, or goes on in the water that the sheet grows from.
-  const int LEGS = 3;
-  vec3 p = at, in_it = refract(way, normal, 1.0 / optics.x), out_of_it = vec3(0.0);
-  float metres = 0.0, inner = 0.0, thickness = sheet.top - sheet.underside;
-  bool on_in_water = false;
-  for (int i = 0; i < LEGS && out_of_it == vec3(0.0) && !on_in_water; ++i) {
-    in_it = i > 0 ? reflect(in_it, normal_out(p)) : in_it; // mirrored altogether
-    p += in_it * (1e-4 * container_max.w);
-    float t = way_out(p, in_it, thickness);
-    metres += t;
-    p += in_it * t;
-    on_in_water = over_water(p.xz) && p.y < water_surface(p.xz).x;
-    vec3 far_normal = normal_out(p);
-    far_normal = dot(far_normal, in_it) > 0.0 ? far_normal : -far_normal;
-    out_of_it = refract(in_it, -far_normal, optics.x);
-    inner = on_in_water || out_of_it == vec3(0.0) ? 0.0 : fresnel(dot(in_it, far_normal), 1.0 / optics.x);
-  }
-  out_of_it = out_of_it == vec3(0.0) ? in_it : out_of_it;
-
-  float path = distance(at, eye.xyz);
-  vec3 through = vec3(0.0);
-  for (int once = 0; once < int(on_in_water); ++once) { // a software rasteriser runs both sides of a branch, but no loop that does not begin
-    float more;
-    through = light_in_water(p, in_it, path + metres, more);
-    through = tinted(through_water(through, more, 1.0, lit_along(p, in_it, more)), p.xz, 0, more);
-  }
-  for (int once = int(on_in_water); once < 1; ++once) through = light_around(p, out_of_it, path + metres);
-  through = tinted(through_water(through, metres, 1.0, sun_past_solids(at)), at.xz, 1, metres);
-  vec3 mirrored_way = reflect(way, normal);
+  vec3 way = normalize(at - eye.xyz);
+  vec3 normal = facing_eye(outward.y == 0.0 ? outward : outward.y > 0.0 ? top_normal(sheet) : underside_normal(sheet), way);
+  float path = distance(at, eye.xyz), inner, outer = fresnel(-dot(normal, way), optics.x);
+  vec3 through = light_in_sheet(refract(way, normal, 1.0 / optics.x), sheet, path, inner), mirrored_way = reflect(way, normal);
   vec3 mirrored = light_around(at, mirrored_way, path) + sun_mirrored(at, mirrored_way);
   // What is mirrored inside comes out on this side, more or less like what is mirrored at once, or goes on, and so on.
-  float outer = fresnel(-dot(normal, way), optics.x);
   float let_through = (1.0 - outer) * (1.0 - inner) / max(1.0 - outer * inner, 1e-6);
   result = vec4(mix(mirrored, through, let_through), 1.0);
 }

@@ -178,8 +178,7 @@ static void test_switch(void **state) {
   pool_destroy(s);
 }
 
-// The water below is what it would be without the sheet, also beside it; where the sheet grows from deeper water, the picture has no
-// hole: a wave of one piece is drawn alike whether a lip hangs from it or not, behind the lip.
+// A lip at a wave: the water below it, the sheet, and how far that goes on into the wave, ever lower, so that its end is hidden.
 static void test_water_below(void **state) {
   (void)state;
   Pool *s = pool_create(0.3f);
