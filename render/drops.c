@@ -41,10 +41,6 @@ bool render_is_drop(const SimFrame *frame, const SimHeightField *field, int32_t 
          !render_in_overhang(&frame->height_field, p, above * frame->particle_radius);
 }
 
-static float clamp01(float x) {
-  return x > 0 ? (x < 1 ? x : 1) : 0; // NaN becomes 0
-}
-
 bool render_drops_find(RenderDrops *drops, const SimFrame *frame, const SimHeightField *field, RenderError *error) {
   drops->count = 0;
   for (int32_t i = 0; i < frame->count; ++i) {
@@ -61,7 +57,7 @@ bool render_drops_find(RenderDrops *drops, const SimFrame *frame, const SimHeigh
     memcpy(out, frame->position + 3 * (size_t)i, 3 * sizeof *out);
     out[3] = radius;
     for (int k = 0; k < 3; ++k)
-      out[4 + k] = frame->colour != NULL ? clamp01(frame->colour[3 * (size_t)i + (size_t)k]) : 1;
+      out[4 + k] = frame->colour != NULL ? render_clamp01(frame->colour[3 * (size_t)i + (size_t)k]) : 1;
     out[7] = 0;
   }
   return gpu_buffer_write(&drops->spheres, "drops", drops->staging, EACH * (size_t)drops->count, error);

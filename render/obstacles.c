@@ -30,10 +30,6 @@ static bool all_below(const float *values, int count, float limit) {
   return true;
 }
 
-static float clamp01(float x) {
-  return x > 0 ? fminf(x, 1) : 0; // NaN becomes 0
-}
-
 // Place, axes and colour.
 static bool place_body(Body *body, const SimObstacle *o) {
   const float *q = o->rotation;
@@ -41,7 +37,7 @@ static bool place_body(Body *body, const SimObstacle *o) {
   if (!(length > 1e-6f && length < 1e6f) || !all_below(o->position, 3, RENDER_FARTHEST)) return false;
   for (int k = 0; k < 3; ++k) {
     body->position[k] = o->position[k];
-    body->colour[k] = clamp01(o->colour[k]);
+    body->colour[k] = render_clamp01(o->colour[k]);
   }
   for (int k = 0; k < 4; ++k) body->rotation[k] = q[k] / length;
   return true;

@@ -153,8 +153,7 @@ bool render_overhang_draw(RenderOverhang *overhang, RenderPicture *picture, cons
   if (!render_height_map_draw(&overhang->top, picture, field, overhang->nodes + nodes, smoothing, error) ||
       !render_height_map_draw(&overhang->underside, picture, field, overhang->nodes + 2 * nodes, smoothing, error) ||
       !gpu_program_prepare(&overhang->program, &desc, error) ||
-      ((overhang->behind.width != picture->width || overhang->behind.height != picture->height) &&
-       !gpu_texture_create(&overhang->behind, &behind, error))) {
+      (overhang->behind.id == 0 && !gpu_texture_create(&overhang->behind, &behind, error))) {
     return false;
   }
   gpu_texture_copy(&picture->colour, &overhang->behind);

@@ -13,17 +13,13 @@ static bool valid_position(const float p[3]) {
   return fabsf(p[0]) < RENDER_FARTHEST && fabsf(p[1]) < RENDER_FARTHEST && fabsf(p[2]) < RENDER_FARTHEST;
 }
 
-static float clamp01(float x) {
-  return x > 0 ? (x < 1 ? x : 1) : 0; // NaN becomes 0
-}
-
 // Spray: a particle that is both sparse (its density is far below the water's mean) and fast is drawn whitish, as the
 // froth that it stands for.
 static float spray_of(const SimFrame *frame, int32_t i, float mean_density, float fast) {
   const float *v = frame->velocity + 3 * (size_t)i;
   const float speed = sqrtf(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-  const float sparse = clamp01((0.75f - frame->density[i] / mean_density) / 0.3f);
-  return sparse * clamp01((speed - 0.4f * fast) / (0.6f * fast));
+  const float sparse = render_clamp01((0.75f - frame->density[i] / mean_density) / 0.3f);
+  return sparse * render_clamp01((speed - 0.4f * fast) / (0.6f * fast));
 }
 
 static float mean_density_of(const SimFrame *frame) {
@@ -56,7 +52,7 @@ static bool stage_one(const SimFrame *frame, int32_t i, float sphere[4], float c
   const float *tint = frame->colour != NULL ? frame->colour + 3 * (size_t)i : water_colour;
   for (int k = 0; k < 3; ++k) {
     sphere[k] = taken ? p[k] : RENDER_FARTHEST;
-    colour[k] = clamp01(tint[k]);
+    colour[k] = render_clamp01(tint[k]);
   }
   sphere[3] = taken ? radius : 0;
   return taken;

@@ -15,6 +15,10 @@ typedef struct RenderPicture RenderPicture;
 /// Particles farther than this from the origin are left out as invalid, m.
 #define RENDER_FARTHEST 1e6f
 
+static inline float render_clamp01(float x) {
+  return x > 0 ? (x < 1 ? x : 1) : 0; // NaN becomes 0
+}
+
 /// The Frame block of frame.glsl, std140. Constant during a picture.
 typedef struct RenderFrameBlock {
   float world_to_view[16];  // column major; rigid

@@ -37,10 +37,6 @@ static bool reserve(RenderWaterColours *colours, RenderError *error) {
   return true;
 }
 
-static float clamp01(float x) {
-  return x > 0 ? (x < 1 ? x : 1) : 0; // NaN becomes 0
-}
-
 // A particle counts at the four places around it.
 static void add_particle(RenderWaterColours *colours, const SimFrame *frame, int32_t particle) {
   const float *p = frame->position + 3 * (size_t)particle, *colour = frame->colour + 3 * (size_t)particle;
@@ -56,7 +52,7 @@ static void add_particle(RenderWaterColours *colours, const SimFrame *frame, int
     const float weight = (1 - fabsf(u[0] - (float)i)) * (1 - fabsf(u[1] - (float)k));
     float *sum =
         colours->sums + 4 * (over ? places_of(colours) : 0) + 4 * ((size_t)k * (size_t)colours->size[0] + (size_t)i);
-    for (int c = 0; c < 3; ++c) sum[c] += weight * clamp01(colour[c]);
+    for (int c = 0; c < 3; ++c) sum[c] += weight * render_clamp01(colour[c]);
     sum[3] += weight;
   }
 }
