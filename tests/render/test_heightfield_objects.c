@@ -81,11 +81,6 @@ static void expect_like(Harness *harness, SimMesh *mesh, SimObstacle body, PoolW
   const PoolDifference d = of_bodies(drawn, exact, empty);
   print_message("%-30s: mean %.2f, median %.2f, 95 %% %.2f of 255 (%d pixels)\n", what, d.mean, d.median, d.most,
                 (int)d.pixels);
-  FILE *f = fopen("/tmp/wt/st_mesh.ppm", "wb");
-  fprintf(f, "P6 %d %d 255\n", WIDTH, 2 * HEIGHT);
-  fwrite(drawn, 1, 3 * PIXELS, f);
-  fwrite(exact, 1, 3 * PIXELS, f);
-  fclose(f);
   free(empty);
   free(exact);
   free(drawn);
